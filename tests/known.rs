@@ -143,7 +143,7 @@ fn contains(ring: &[Point3<f64>], x: f64, y: f64) -> bool {
     })
 }
 
-/// By GDAL: strips and tiles, all predictors, whole and floating-point numbers, both byte orders.
+/// By GDAL and LASzip: strips and tiles, all predictors, whole and floating-point numbers, both byte orders.
 #[test]
 fn files_of_other_programs_hold_the_planted_ground_and_house() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/known/");
@@ -160,6 +160,9 @@ fn files_of_other_programs_hold_the_planted_ground_and_house() {
         ("lzw_p2_short.tif", 1.01),
         ("zstd_big.tif", 1e-3),
         ("grid.asc", 1e-3),
+        ("ground_1.las", 2e-3),
+        ("ground_3.laz", 2e-3),
+        ("ground_7.laz", 2e-3),
     ] {
         let terrain = Terrain::read(&file(name), &system, origin, 0.3).unwrap();
         for (x, y) in [(0.0, 0.0), (-38.2, 27.0), (31.7, -28.1)] {

@@ -85,9 +85,9 @@ pub(super) struct InputArgs {
     /// Height of the ground, metres in the frame of the orientation; estimated if not given.
     #[arg(long, value_name = "H", value_parser = parse_finite, allow_hyphen_values = true)]
     pub ground_z: Option<f64>,
-    /// Terrain model: a GeoTIFF of heights or an ASCII grid of ESRI, in the frame of the
-    /// orientation. The ground and the feet of walls follow it; a difference of heights that the
-    /// images show is taken out and named.
+    /// Terrain model: a GeoTIFF of heights, an ASCII grid of ESRI, or a point cloud (LAS, LAZ)
+    /// whose ground is classified, in the frame of the orientation. The ground and the feet of
+    /// walls follow it; a difference of heights that the images show is taken out and named.
     #[arg(long, value_name = "FILE", conflicts_with = "ground_z")]
     pub terrain: Option<PathBuf>,
     /// Standard deviation of the terrain's heights, metres (0.3 if not given).

@@ -1,51 +1,24 @@
 //! GeoTIFF of heights (OGC 19-008): one band of numbers, its place in the tags.
 
+use super::geo_keys;
 use super::height_grid::HeightGrid;
 use super::refusal::refusal;
-use super::system::{StatedSystem, WorldSystem};
+use super::system::WorldSystem;
 use crate::error::Result;
 use crate::orientation::InputFile;
 use crate::raster::{Directory, NumberRaster, tiff_tags as tags};
 
-/// Keys of the directory of keys.
-mod keys {
-    pub(super) const MODEL_TYPE: u64 = 1024;
-    pub(super) const RASTER_TYPE: u64 = 1025;
-    pub(super) const GEODETIC_CRS: u64 = 2048;
-    pub(super) const PROJECTED_CRS: u64 = 3072;
-    pub(super) const PROJECTED_UNITS: u64 = 3076;
-    pub(super) const VERTICAL_UNITS: u64 = 4099;
-}
-
-/// EPSG's number of the metre.
-const METRE: u64 = 9001;
-/// Codes from here on stand for what the file defines by itself.
-const USER_DEFINED: u64 = 32_767;
+/// The key by which coordinates are of the corner or of the centre of a cell.
+const RASTER_TYPE: u64 = 1025;
 
 pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid> {
     let raster = NumberRaster::read(&file.path, &file.bytes)?;
     let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
     let reproject = "convert it with gdalwarp to the system of the orientation, in metres";
-    let key = |key: u64| geo_key(&raster.directory, key);
-    for (units, what) in [
-        (keys::PROJECTED_UNITS, "coordinates"),
-        (keys::VERTICAL_UNITS, "heights"),
-    ] {
-        if key(units).is_some_and(|unit| unit != METRE && unit < USER_DEFINED) {
-            return Err(refuse(&format!("its {what} are not in metres"), reproject));
-        }
-    }
-    let code = |key: Option<u64>| key.filter(|c| *c < USER_DEFINED).map(|c| c as u32);
-    let is_geographic = key(keys::MODEL_TYPE) == Some(2);
-    let stated = match (
-        code(key(keys::PROJECTED_CRS)),
-        code(key(keys::GEODETIC_CRS)),
-    ) {
-        (Some(code), _) => StatedSystem::Code(code),
-        (None, Some(code)) if is_geographic => StatedSystem::Code(code),
-        _ if is_geographic => StatedSystem::LongitudeLatitude,
-        _ => StatedSystem::Unstated,
-    };
+    let keys = raster.directory.numbers(tags::GEO_KEY_DIRECTORY);
+    let keys = keys.unwrap_or_default();
+    let key = |key: u64| geo_keys::value(&keys, key);
+    let stated = geo_keys::stated(key).map_err(|problem| refuse(&problem, reproject))?;
     system
         .is_frame_of(&stated)
         .map_err(|problem| refuse(&problem, reproject))?;
@@ -56,7 +29,7 @@ pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid>
         )
     })?;
     // Coordinates are of the corner of a cell, unless the file says that they are of its centre.
-    let half = if key(keys::RASTER_TYPE) == Some(2) {
+    let half = if key(RASTER_TYPE) == Some(2) {
         0.0
     } else {
         0.5
@@ -89,12 +62,4 @@ fn placed(directory: &Directory) -> std::result::Result<([f64; 2], [f64; 2]), &'
         return Err("it does not state where it lies");
     };
     Ok(([x - i * sx, y + j * sy], [*sx, *sy]))
-}
-
-/// The number of a key of the GeoTIFF, where it stands in the directory of keys itself.
-fn geo_key(directory: &Directory, wanted: u64) -> Option<u64> {
-    let keys = directory.numbers(tags::GEO_KEY_DIRECTORY)?;
-    let mut entries = keys.get(4..)?.chunks_exact(4);
-    let entry = entries.find(|entry| entry[0] == wanted && entry[1] == 0)?;
-    Some(entry[3])
 }

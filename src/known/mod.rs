@@ -4,24 +4,27 @@
 //! ```text
 //! system        the coordinate system that a file states, and the way from it to the scene's
 //! height_grid   heights on a grid, interpolated
-//!    ascii_grid, geotiff   its readers
+//!    ascii_grid, geotiff, point_cloud   its readers
+//!    geo_keys   the system by the keys of GeoTIFF and LAS
 //! footprint     outlines in plan: inside or outside, and how far from the border
 //!    geojson, city_json    its readers
 //! ```
 //!
 //! Files are recognised by their content. Invariant: a reader takes any bytes and returns a value
 //! or a readable refusal; what it holds is a small multiple of its input, or of the cells that a
-//! raster states, of which there are at most a hundred million.
+//! raster states, of which there are at most a hundred million, as of the points of a cloud.
 //!
-//! Not read: GeoPackage (a database, whose reader is larger than all of these) and point clouds in
-//! LAS and LAZ; both convert to what is read with one command of GDAL or PDAL.
+//! Not read: GeoPackage (a database, whose reader is larger than all of these), which one command
+//! of GDAL converts to what is read.
 
 mod ascii_grid;
 mod city_json;
 mod footprint;
+mod geo_keys;
 mod geojson;
 mod geotiff;
 mod height_grid;
+mod point_cloud;
 mod refusal;
 mod system;
 #[cfg(test)]
@@ -37,7 +40,7 @@ use nalgebra::Vector3;
 
 use self::refusal::refusal;
 use crate::error::{Error, Result};
-use crate::orientation::InputFile;
+use crate::orientation::{InputFile, POINT_CLOUD};
 
 /// What is known of a scene; frame and units of the scene.
 #[derive(Clone, Debug, Default)]
@@ -93,14 +96,16 @@ impl Terrain {
     ) -> Result<Self> {
         let grid = if crate::raster::is_tiff(&file.bytes) {
             geotiff::read(file, system)?
+        } else if file.bytes.starts_with(POINT_CLOUD) {
+            point_cloud::read(file, system)?
         } else if ascii_grid::is_ascii_grid(file) {
             ascii_grid::read(file)?
         } else {
             return Err(refusal(
                 &file.path,
                 "it is no terrain model that is read",
-                "give a GeoTIFF of heights, or an ASCII grid of ESRI (.asc); points and LAS files \
-                 become one with gdal_grid or pdal",
+                "give a GeoTIFF of heights, an ASCII grid of ESRI (.asc), or a point cloud (.las, \
+                 .laz) whose ground is classified; lists of points become one with gdal_grid",
             ));
         };
         Ok(Self {

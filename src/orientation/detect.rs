@@ -139,12 +139,15 @@ const HEAD_LINES: usize = 6;
 /// those of other lists, and it orients no image by itself.
 pub(crate) const GCP_LIST: &str = "gcp_list.txt";
 
+/// What a point cloud in LAS or LAZ begins with.
+pub(crate) const POINT_CLOUD: &[u8] = b"LASF";
+
 /// Recognises a file.
 pub fn detect(file: &InputFile) -> FileKind {
     if crate::raster::unread_image_format(&file.path, &file.bytes).is_some_and(|f| f.is_image) {
         return FileKind::UnreadImage;
     }
-    if crate::raster::is_height_raster(&file.bytes) {
+    if crate::raster::is_height_raster(&file.bytes) || file.bytes.starts_with(POINT_CLOUD) {
         return FileKind::Terrain;
     }
     if crate::raster::image_format(&file.bytes).is_some() {

@@ -52,8 +52,8 @@ pub use angles::{
     AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa,
     rotation_from_yaw_pitch_roll,
 };
-pub(crate) use detect::GCP_LIST;
 pub use detect::{FileKind, detect};
+pub(crate) use detect::{GCP_LIST, POINT_CLOUD};
 pub use format::Format;
 pub use geodesy::Anchor;
 pub(crate) use geodesy::geocentric_of;

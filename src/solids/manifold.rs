@@ -19,6 +19,10 @@ use crate::model::WELD_M;
 /// other face needs them, metres: a tenth of the step in which coordinates are written.
 const STRAIGHT_M: f64 = 1e-5;
 
+/// Sine of the largest angle between a wall and the vertical plane of those that it is merged with:
+/// ten degrees, half of what other programs allow between a face and its triangles.
+const LARGEST_TURN: f64 = 0.173;
+
 /// Makes the shell a closed oriented 2-manifold. `None` when its faces do not close.
 pub(super) fn close_shell(shell: &Shell) -> Option<Shell> {
     let mut closed = merge_walls(separate(shell)?)?;
@@ -281,6 +285,15 @@ fn in_one_plane(walls: &[usize], shell: &Shell) -> bool {
     };
     let start = far(points[0]);
     let along = (far(start) - start).normalize();
+    // A stretch of a millimetre may cross the plane at any angle and yet stay near it.
+    let runs_along = |f: usize| {
+        let ring = shell.faces[f].rings[0].iter().map(|&c| plan(c));
+        let ring: Vec<Point2<f64>> = ring.collect();
+        ring.iter().all(|p| {
+            let d = p - ring[0];
+            d.perp(&along).abs() <= LARGEST_TURN * d.norm()
+        })
+    };
     let flat = points
         .iter()
         .all(|p| (p - start).perp(&along).abs() < WELD_M / 2.0);
@@ -296,7 +309,8 @@ fn in_one_plane(walls: &[usize], shell: &Shell) -> bool {
             sum + (t - s) * (p.z + q.z)
         }) > 0.0
     };
-    flat && walls.iter().all(|&f| faces(f) == faces(walls[0]))
+    flat && walls.iter().all(|&f| runs_along(f))
+        && walls.iter().all(|&f| faces(f) == faces(walls[0]))
 }
 
 /// Leaves out corners where only two faces meet and the edge between them runs straight on.

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! partition  outlines of all facets -> one partition of the plan
+//! touching   buildings that touch themselves in a corner, parted
 //! rings      closed rings from the directed edges of a region
 //! walls      partition -> faces of a building: roofs, walls, ground
 //! sides      straight stretches of the outline, a wall below each
@@ -24,6 +25,7 @@ mod partition;
 mod rejection;
 mod rings;
 mod sides;
+mod touching;
 mod walls;
 
 pub use overhang::{RIM_M, close_below_overhangs};

@@ -4,7 +4,8 @@
 //!    hidden).
 //! 2. Plan positions closer than [`WELD_M`] become one vertex.
 //! 3. Vertices that lie on another facet's edge are put into that edge (T-junctions).
-//! 4. Where two roofs cross in height along a shared edge, the crossing becomes a vertex.
+//! 4. A building that touches itself in a corner is parted there.
+//! 5. Where two roofs cross in height along a shared edge, the crossing becomes a vertex.
 //!
 //! What still contradicts (an edge taken twice, edges that cross) is taken out and reported.
 
@@ -42,7 +43,7 @@ pub(super) struct PlanFacet {
 
 impl PlanFacet {
     /// One facet for every region, otherwise like this one.
-    fn with_regions(&self, regions: Vec<PlanRegion>) -> impl Iterator<Item = Self> + '_ {
+    pub(super) fn with_regions(&self, regions: Vec<PlanRegion>) -> impl Iterator<Item = Self> + '_ {
         regions.into_iter().map(|region| Self {
             region,
             ..self.clone()
@@ -80,6 +81,7 @@ impl PlanPartition {
         }
         partition.drop_small(&mut rejected);
         partition.drop_conflicts(&mut rejected);
+        partition.part_touching(&mut welder);
         partition.insert_height_crossings(&mut welder);
         let lost = |source: &usize| {
             partition.facets.iter().all(|f| f.source != *source)
@@ -214,7 +216,7 @@ impl PlanPartition {
 
     /// The facets whose edges are taken already or cross those of an earlier facet that is not one
     /// of them.
-    fn conflicting(&self) -> BTreeSet<usize> {
+    pub(super) fn conflicting(&self) -> BTreeSet<usize> {
         let mut taken = BTreeSet::new();
         let (mut index_of_taken, mut taken_edges) = (PlanIndex::default(), Vec::new());
         let positions = &self.positions;
@@ -318,13 +320,13 @@ fn vertices_on_edge(a: u32, b: u32, positions: &[Point2<f64>], index: &PlanIndex
 
 /// Gives plan positions closer than [`WELD_M`] the same index.
 #[derive(Default)]
-struct Welder {
-    positions: Vec<Point2<f64>>,
+pub(super) struct Welder {
+    pub(super) positions: Vec<Point2<f64>>,
     cells: BTreeMap<(i64, i64), Vec<u32>>,
 }
 
 impl Welder {
-    fn weld(&mut self, p: Point2<f64>) -> u32 {
+    pub(super) fn weld(&mut self, p: Point2<f64>) -> u32 {
         let (column, row) = ((p.x / WELD_M).floor() as i64, (p.y / WELD_M).floor() as i64);
         let nearest = (-1..=1)
             .flat_map(|dy| (-1..=1).map(move |dx| (column + dx, row + dy)))

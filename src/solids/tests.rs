@@ -3,7 +3,7 @@
 use super::*;
 use crate::geometry::Plane;
 use crate::model::{Violation, check_invariants};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 use proptest::prelude::*;
 
 /// A facet over plan rings on `z = z0 + gx x + gy y`.
@@ -139,12 +139,96 @@ fn a_ring_of_roofs_that_meets_itself_in_a_corner_is_a_manifold() {
         .collect();
     let model = closed(&facets);
     assert_eq!(model.buildings.len(), 1);
-    let ground = model.buildings[0]
-        .solid
+    let solid = &model.buildings[0].solid;
+    let ground = solid
         .faces
         .iter()
-        .find(|f| f.surface == Surface::Ground);
-    assert_eq!(ground.unwrap().rings.len(), 2);
+        .find(|f| f.surface == Surface::Ground)
+        .unwrap();
+    assert_eq!(ground.rings.len(), 2);
+    check_apart(&model.buildings[0]);
+}
+
+/// No two corners of the ground lie together.
+fn check_apart(building: &Building) {
+    let solid = &building.solid;
+    let ground = solid.faces.iter().filter(|f| f.surface == Surface::Ground);
+    let corners: Vec<u32> = ground.flat_map(|f| f.rings.concat()).collect();
+    for (i, &a) in corners.iter().enumerate() {
+        for &b in &corners[..i] {
+            let [p, q] = [a, b].map(|c| solid.vertices[c as usize]);
+            assert!((p - q).norm() > 2e-3, "{p} and {q}");
+        }
+    }
+}
+
+#[test]
+fn a_courtyard_that_touches_the_outline_in_a_corner_is_drawn_back() {
+    // One facet with a hole, and two around a hole.
+    let whole = facet(
+        &[
+            &[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)],
+            &[(0.0, 0.0), (2.0, 6.0), (6.0, 2.0)],
+        ],
+        6.0,
+        0.1,
+        0.0,
+    );
+    let south = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (6.0, 2.0)];
+    let north = [
+        (0.0, 0.0),
+        (2.0, 6.0),
+        (6.0, 2.0),
+        (10.0, 10.0),
+        (0.0, 10.0),
+    ];
+    let parts = [
+        facet(&[&south], 6.0, 0.1, 0.0),
+        facet(&[&north], 4.0, 0.0, 0.2),
+    ];
+    for facets in [&[whole][..], &parts] {
+        let model = closed(facets);
+        let building = &model.buildings[0];
+        check_apart(building);
+        let triangle = |[a, b, c]: [Point2<f64>; 3]| 0.5 * (b - a).perp(&(c - a));
+        let solid = &building.solid;
+        let ground = solid.faces.iter().filter(|f| f.surface == Surface::Ground);
+        let rings = ground.flat_map(|f| &f.rings);
+        let area = |ring: &Vec<u32>| {
+            let corner = |i: usize| solid.vertices[ring[i] as usize].xy();
+            let fan = (1..ring.len() - 1).map(|i| triangle([corner(0), corner(i), corner(i + 1)]));
+            fan.sum::<f64>()
+        };
+        let area = rings.map(area).sum::<f64>().abs();
+        assert!((area - 84.0).abs() < 0.05, "{area}");
+    }
+}
+
+#[test]
+fn a_jog_of_a_millimetre_is_no_part_of_a_long_wall() {
+    let south = [(0.0, 0.0), (5.0, 0.0), (5.0012, 0.0004), (10.0, 0.0004)];
+    let outline: Vec<(f64, f64)> = south.into_iter().chain([(10.0, 8.0), (0.0, 8.0)]).collect();
+    let model = closed(&[facet(&[&outline], 5.0, 0.0, 0.0)]);
+    let solid = &model.buildings[0].solid;
+    for face in solid.faces.iter().filter(|f| f.surface == Surface::Wall) {
+        let ring: Vec<_> = face.rings[0]
+            .iter()
+            .map(|&c| solid.vertices[c as usize].xy())
+            .collect();
+        let far = |from: Point2<f64>| {
+            let apart = |p: &Point2<f64>| (p - from).norm();
+            *ring
+                .iter()
+                .max_by(|p, q| apart(p).total_cmp(&apart(q)))
+                .unwrap()
+        };
+        let start = far(ring[0]);
+        let along = (far(start) - start).normalize();
+        for (p, q) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+            let d = q - p;
+            assert!(d.perp(&along).abs() <= 0.2 * d.norm(), "{p} to {q}");
+        }
+    }
 }
 
 #[test]

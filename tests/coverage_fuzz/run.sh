@@ -44,6 +44,9 @@ for sample in "${samples[@]}"; do
         images | tiff)
             export RIDGELINE_FUZZ_ONE=image
             cp tests/fixtures/"$sample"/*.* "$corpus/new" ;;
+        known)
+            export RIDGELINE_FUZZ_ONE=known
+            cp tests/fixtures/known/* "$corpus/new" ;;
         archive)
             export RIDGELINE_FUZZ_ONE=archive
             python3 -m zipfile -c "$corpus/new/sample" tests/fixtures/{colmap,nerfstudio}/* ;;

@@ -2,8 +2,8 @@
 //!
 //! An input is the contents of all files of a sample, with [`BORDER`] between them;
 //! `RIDGELINE_FUZZ_FOLDER` names the sample, whose file names are kept. With `RIDGELINE_FUZZ_ONE`
-//! an input is one `image`, one `archive` or the description of one `project`. Whatever the bytes
-//! are, the answer is a value or a readable refusal.
+//! an input is one `image`, one `archive`, the description of one `project`, or one file of what
+//! may be `known` of a place. Whatever the bytes are, the answer is a value or a readable refusal.
 #![no_main]
 
 use std::path::PathBuf;
@@ -11,6 +11,7 @@ use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
 use ridgeline::InputFile;
+use ridgeline::known::{Register, Terrain, WorldSystem};
 use ridgeline::orientation::{detect, orientation_sets};
 use ridgeline::raster::{image_header, load_image, load_window};
 use ridgeline::scene_loader::{open_project, unpack};
@@ -23,6 +24,8 @@ enum Kind {
     Image,
     Archive,
     Project,
+    /// A terrain model, a point cloud, or footprints.
+    Known,
     /// The files of a sample, by their names.
     Orientation(Vec<String>),
 }
@@ -32,6 +35,7 @@ static KIND: LazyLock<Kind> = LazyLock::new(|| {
         Ok("image") => return Kind::Image,
         Ok("archive") => return Kind::Archive,
         Ok("project") => return Kind::Project,
+        Ok("known") => return Kind::Known,
         _ => {}
     }
     let folder = PathBuf::from(std::env::var("RIDGELINE_FUZZ_FOLDER").expect("a folder is named"));
@@ -88,6 +92,20 @@ fn read_image(bytes: &[u8]) {
     }
 }
 
+fn read_known(file: &InputFile) {
+    let system = WorldSystem {
+        epsg: Some(25832),
+        anchor: None,
+    };
+    let origin = [432_100.0, 5_412_300.0, 0.0].into();
+    let terrain = Terrain::read(file, &system, origin, 0.3);
+    if let Ok(terrain) = &terrain {
+        assert!(terrain.z_at(3.0, -2.0).is_none_or(f64::is_finite));
+    }
+    check(terrain);
+    check(Register::read(file, &system, origin, 0.5, &mut Vec::new()));
+}
+
 fn file(path: &str, input: &[u8]) -> InputFile {
     InputFile::new(path, input.to_vec())
 }
@@ -106,6 +124,7 @@ fuzz_target!(|input: &[u8]| {
         Kind::Image => read_image(input),
         Kind::Archive => check(unpack(file("a.zip", input)).and_then(open_project)),
         Kind::Project => check(open_project(vec![file("project.json", input)])),
+        Kind::Known => read_known(&file("known", input)),
         Kind::Orientation(paths) => read_orientation(&files(paths, input)),
     }
 });
