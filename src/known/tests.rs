@@ -283,6 +283,10 @@ fn terrain_that_cannot_be_used_is_refused_by_name() {
     refused(&with(&[[3072, 25832], [4099, 9003]]), "not in metres");
     refused(
         &InputFile::new("a.las", b"LASF....".to_vec()),
+        "ends within its header",
+    );
+    refused(
+        &InputFile::new("a.bin", b"FSAL....".to_vec()),
         "no terrain model",
     );
 }

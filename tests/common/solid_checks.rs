@@ -42,7 +42,8 @@ pub fn solid_errors(city: &Value) -> BTreeMap<String, Findings> {
                 let faces: Vec<Vec<Vec<usize>>> = (list(shell).iter())
                     .map(|face| list(face).iter().map(ring).collect())
                     .collect();
-                errors.insert(name.clone(), shell_errors(&vertices, &faces, scale));
+                let found: &mut Findings = errors.entry(name.clone()).or_default();
+                found.extend(shell_errors(&vertices, &faces, scale));
             }
         }
     }
