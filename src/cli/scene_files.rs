@@ -44,7 +44,7 @@ impl SceneFiles {
             }
         }
         let rest = usize::try_from(length).unwrap_or_default();
-        bytes.reserve_exact(rest.saturating_sub(bytes.len()));
+        bytes.try_reserve_exact(rest.saturating_sub(bytes.len()))?;
         file.read_to_end(&mut bytes)?;
         Ok(InputFile::new(relative, bytes))
     }

@@ -3,7 +3,8 @@
 //!
 //! The plan names every input file with its length and sum, of large photographs that of their
 //! first bytes, too. Each step compares all that it reads with these, so that a part made from
-//! anything else is refused by the file's name; a part names the plan by the sum of the plan's file.
+//! anything else is refused by the file's name; a part names the plan by the sum of the plan's
+//! file.
 //!
 //! Invariant: the same plan and inputs give the same bytes of a part, and all parts the model that
 //! [`Area`](super::Area) makes in one process.
@@ -313,8 +314,8 @@ impl BlockPlan {
     }
 
     /// One model of all parts, as files. Of the scene's files, those of [`Self::unchanged`], no
-    /// pixel is needed. `part` has the bytes of a tile's part, if there is one; missing, damaged and
-    /// foreign ones are refused by name.
+    /// pixel is needed. `part` has the bytes of a tile's part, if there is one; missing, damaged
+    /// and foreign ones are refused by name.
     pub fn join(
         &self,
         text: &[u8],
