@@ -332,14 +332,24 @@ fn what_changed_since_the_plan_is_refused_by_name() {
     fs::write(block.scene().join("model_atlas.jpg"), b"more").unwrap();
     assert!(block.tile(3).status.success());
     fs::remove_file(block.part(3)).unwrap();
+    // A list of the orientation, and the first bytes of a photograph, which every step reads.
     let image = block.scene().join("images/s2_03.png");
+    for (path, place) in [
+        (&image, 0.1),
+        (&block.scene().join("colmap/images.txt"), 0.9),
+    ] {
+        let sound = fs::read(path).unwrap();
+        fs::write(path, changed_at(&sound, place)).unwrap();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let named = [name, ": the file has changed since the plan was made"];
+        block.is_refused(&block.tile(3), &named);
+        assert!(!block.part(3).exists());
+        // One byte more, at its end.
+        fs::write(path, [&sound[..], b" "].concat()).unwrap();
+        block.is_refused(&block.tile(3), &named);
+        fs::write(path, sound).unwrap();
+    }
     let sound = fs::read(&image).unwrap();
-    let mut changed = sound.clone();
-    *changed.last_mut().unwrap() ^= 1;
-    fs::write(&image, changed).unwrap();
-    let named = ["images/s2_03.png: the file has changed since the plan was made"];
-    block.is_refused(&block.tile(3), &named);
-    assert!(!block.part(3).exists());
     fs::remove_file(&image).unwrap();
     block.is_refused(&block.tile(3), &["images/s2_03.png: the file is missing"]);
     fs::write(&image, sound).unwrap();
@@ -363,6 +373,69 @@ fn what_changed_since_the_plan_is_refused_by_name() {
         &block.join(),
         &["tiles.json: cannot be read", "ridgeline plan"],
     );
+}
+
+/// Another byte at a share of the whole.
+fn changed_at(bytes: &[u8], place: f64) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    let at = (place * (bytes.len() - 1) as f64) as usize;
+    bytes[at] ^= 1;
+    bytes
+}
+
+#[test]
+fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
+    let block = Block::planned();
+    let mut command = block.command();
+    command.args(["plan", "scene", "--tile", "60", "--max-views", "3"]);
+    let planned = command.args(AREA).args(["--out", "few"]).output().unwrap();
+    assert!(planned.status.success(), "{}", words(&planned));
+    let folder = block.0.path().join("few");
+    let plan: Value =
+        serde_json::from_slice(&fs::read(folder.join("tiles.json")).unwrap()).unwrap();
+    let views = plan["tiles"][0]["cells"][0]["views"].as_array().unwrap();
+    let is_read = |name: &str| views.iter().any(|view| view["view"] == name);
+    assert_eq!(views.len(), 3);
+    let make = || {
+        let _ = fs::remove_file(folder.join("parts/1.part"));
+        block.command().args(["tile", "few", "1"]).output().unwrap()
+    };
+    let part = || fs::read(folder.join("parts/1.part")).unwrap();
+    assert!(make().status.success());
+    let sound = part();
+    // The others are damaged, all but their first bytes and their length.
+    let images = block.scene().join("images");
+    let (read, others): (Vec<_>, Vec<_>) =
+        (files_in(&images).into_iter()).partition(|(name, _)| is_read(name));
+    assert_eq!((read.len(), others.is_empty()), (3, false));
+    for (name, bytes) in &others {
+        fs::write(images.join(name), changed_at(bytes, 1.0)).unwrap();
+    }
+    let output = make();
+    assert!(output.status.success(), "{}", words(&output));
+    assert!(part() == sound);
+    let (name, bytes) = &read[1];
+    fs::write(images.join(name), changed_at(bytes, 1.0)).unwrap();
+    let named = format!("{name}: the file has changed since the plan was made");
+    block.is_refused(&make(), &[&named]);
+    fs::write(images.join(name), bytes).unwrap();
+    assert!(make().status.success() && part() == sound);
+    // An archive is read as a whole, to the same results.
+    for (name, bytes) in &others {
+        fs::write(images.join(name), bytes).unwrap();
+    }
+    let archive = common::zipped(&common::synthetic_files());
+    fs::write(block.0.path().join("scene.zip"), archive).unwrap();
+    let model_of = |scene: &str, out: &str| {
+        let mut command = block.command();
+        command.args(["reconstruct", scene, "--roi", "-31,-31,31,31", "--out", out]);
+        let output = command.args(["--max-views", "3"]).output().unwrap();
+        assert!(output.status.success(), "{}", words(&output));
+        let mut files = files_in(&block.0.path().join(out));
+        files.remove("report.json");
+        files
+    };
+    assert!(model_of("scene", "a") == model_of("scene.zip", "b"));
 }
 
 #[test]

@@ -12,12 +12,13 @@ use super::args::{JoinArgs, PlanArgs, TileArgs};
 use super::failure::Failure;
 use super::files;
 use super::input::{self, OpenedScene, ReadFiles, refusal};
+use super::scene_files::SceneFiles;
 
 /// Writes the plan of a block and says what its tiles need.
 pub(super) fn plan(args: &PlanArgs) -> Result<(), Failure> {
     let params = input::read_params(&args.input)?;
     let OpenedScene {
-        files,
+        mut files,
         options,
         mut params,
         seen,
@@ -35,7 +36,9 @@ pub(super) fn plan(args: &PlanArgs) -> Result<(), Failure> {
             .collect(),
     };
     let refuse = |e: ridgeline::Error| refusal(&e, &seen);
-    let plan = BlockPlan::new(source, &files, &options, &params, args.tile).map_err(refuse)?;
+    let inputs = files.stamps().map_err(refuse)?;
+    let plan = BlockPlan::new(source, &mut files, inputs, &options, &params, args.tile);
+    let plan = plan.map_err(refuse)?;
     let text = plan.to_json().map_err(refuse)?;
     eprintln!("{seen}");
     let path = args.out.join(BlockPlan::FILE);
@@ -71,10 +74,10 @@ pub(super) fn tile(args: &TileArgs) -> Result<(), Failure> {
         println!("tile {}: {outcome} (made before)", args.tile);
         return Ok(());
     }
-    let read = read_inputs(&plan, &args.plan)?;
+    let (mut files, seen) = read_inputs(&plan, &args.plan)?;
     let (part, outcome) = plan
-        .work_off(&text, args.tile, read.files, &silent())
-        .map_err(|e| refusal(&e, &read.seen))?;
+        .work_off(&text, args.tile, &mut files, &silent())
+        .map_err(|e| refusal(&e, &seen))?;
     files::write_durably(&path, &part)?;
     println!(
         "tile {} of {}: {outcome} ({:.1} s)",
@@ -88,9 +91,9 @@ pub(super) fn tile(args: &TileArgs) -> Result<(), Failure> {
 /// Joins all parts and writes the model.
 pub(super) fn join(args: &JoinArgs) -> Result<(), Failure> {
     let (plan, text) = read_plan(&args.plan)?;
-    let read = read_inputs(&plan, &args.plan)?;
+    let (files, _) = read_inputs(&plan, &args.plan)?;
     let part = |tile: u32| fs::read(args.plan.join(plan.part_path(tile).ok()?)).ok();
-    let written = plan.join(&text, read.files, part).map_err(named)?;
+    let written = plan.join(&text, &files.files, part).map_err(named)?;
     fs::create_dir_all(&args.out).map_err(|e| {
         Failure::Input(format!(
             "{}: cannot be made: {e}; give --out a folder that can be written",
@@ -117,18 +120,24 @@ fn read_plan(folder: &Path) -> Result<(BlockPlan, Vec<u8>), Failure> {
     Ok((plan, text))
 }
 
-/// The files that a plan was made from, as they are now.
-fn read_inputs(plan: &BlockPlan, folder: &Path) -> Result<ReadFiles, Failure> {
+/// The files that a plan was made from, and a count of what is there now. What is in memory of them
+/// is as it was then.
+fn read_inputs(plan: &BlockPlan, folder: &Path) -> Result<(SceneFiles, String), Failure> {
     let BlockSource {
         scene,
         orientation,
         known,
     } = &plan.source;
-    let mut read = input::read_files(Path::new(scene), orientation.as_deref(), folder)?;
+    let read = input::read_files(Path::new(scene), orientation.as_deref(), folder)?;
+    let ReadFiles {
+        mut files, seen, ..
+    } = read;
+    let mut inner = std::mem::take(&mut files.files);
     for path in known {
-        input::add_known(&mut read.files, Path::new(path))?;
+        input::add_known(&mut inner, Path::new(path))?;
     }
-    Ok(read)
+    let unchanged = plan.unchanged(inner).map_err(|e| refusal(&e, &seen))?;
+    Ok((files.with(unchanged), seen))
 }
 
 fn named(error: ridgeline::Error) -> Failure {

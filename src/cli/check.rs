@@ -6,8 +6,9 @@ use nalgebra::Matrix3;
 use ridgeline::Error;
 use ridgeline::agreement::{AgreementReport, Finding};
 use ridgeline::execution::progress::silent;
+use ridgeline::orientation::FileSource;
 use ridgeline::pipeline::{Run, Stage};
-use ridgeline::scene_loader::load_scene;
+use ridgeline::scene_loader::PlannedScene;
 use serde_json::{Value, json};
 
 use super::args::CheckArgs;
@@ -18,8 +19,10 @@ use super::input;
 /// refused is a failure as anywhere.
 pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
     let params = input::read_params(&args.input)?;
-    let opened = input::open(&args.input, params, Path::new(""))?;
-    let outcome = load_scene(&opened.files, &opened.options).map(|scene| {
+    let mut opened = input::open(&args.input, params, Path::new(""))?;
+    let planned = PlannedScene::new(&mut opened.files, &opened.options);
+    let outcome = planned.and_then(|planned| planned.load(opened.files.files()));
+    let outcome = outcome.map(|scene| {
         let mut run = Run::new(scene, opened.params);
         if run.stages().contains(&Stage::Adjustment) {
             run.step(Stage::Adjustment, &silent());

@@ -4,9 +4,8 @@ use std::fs;
 use std::io::{self, Write as _};
 use std::path::Path;
 
-use ridgeline::orientation::InputFile;
-
 use super::failure::Failure;
+use super::scene_files::SceneFiles;
 use super::walk::{self, FolderContents};
 
 /// The files of a scene, sorted by path, and a count of them. The folder of the results is not part
@@ -14,7 +13,7 @@ use super::walk::{self, FolderContents};
 pub(super) fn read_scene(
     folder: &Path,
     results: &Path,
-) -> Result<(Vec<InputFile>, FolderContents), Failure> {
+) -> Result<(SceneFiles, FolderContents), Failure> {
     let (mut files, seen) = if folder.is_file() && is_archive(folder) {
         walk::open_archive(folder)?
     } else if folder.is_dir() {
@@ -25,7 +24,7 @@ pub(super) fn read_scene(
             folder.display()
         )));
     };
-    files.sort_by(|a, b| a.path.cmp(&b.path));
+    files.files.sort_by(|a, b| a.path.cmp(&b.path));
     Ok((files, seen))
 }
 

@@ -10,10 +10,11 @@ use ridgeline::scene_loader::{LoadOptions, Project, open_project};
 use super::args::InputArgs;
 use super::failure::Failure;
 use super::files;
+use super::scene_files::SceneFiles;
 
 /// A scene's files, options and parameters.
 pub(super) struct OpenedScene {
-    pub files: Vec<InputFile>,
+    pub files: SceneFiles,
     pub options: LoadOptions,
     pub params: Params,
     /// Kinds and numbers of the files, in a sentence.
@@ -39,9 +40,10 @@ pub(super) fn open(
         seen,
     } = read_files(&args.scene, args.orientation.as_deref(), results)?;
     let stated = project.options;
-    let known = |files: &mut Vec<InputFile>, path: &Option<PathBuf>| {
+    let known = |files: &mut SceneFiles, path: &Option<PathBuf>| {
         let path = path.as_deref();
-        path.map(|path| add_known(files, path)).transpose()
+        path.map(|path| add_known(&mut files.files, path))
+            .transpose()
     };
     let terrain = known(&mut files, &args.terrain)?;
     let footprints = known(&mut files, &args.footprints)?;
@@ -74,7 +76,7 @@ pub(super) fn open(
 
 /// The files of a scene.
 pub(super) struct ReadFiles {
-    pub files: Vec<InputFile>,
+    pub files: SceneFiles,
     /// What they say of a run, where they are those of a project.
     project: Project,
     /// Where the files of an orientation beside the scene were put.
@@ -96,13 +98,14 @@ pub(super) fn read_files(
     let beside = orientation.map(Path::new);
     let beside = beside.filter(|path| path.is_dir() && !lies_in(path, scene));
     let beside = match beside {
-        Some(path) => Some(add_orientation(&mut files, path)?),
+        Some(path) => Some(add_orientation(&mut files.files, path)?),
         None => None,
     };
     let seen = format!("{} holds {seen}", scene.display());
-    let (files, project) = open_project(files).map_err(|e| refusal(&e, &seen))?;
+    let inner = std::mem::take(&mut files.files);
+    let (inner, project) = open_project(inner).map_err(|e| refusal(&e, &seen))?;
     Ok(ReadFiles {
-        files,
+        files: files.with(inner),
         project: project.unwrap_or_default(),
         beside,
         seen,
@@ -138,7 +141,7 @@ fn add_orientation(files: &mut Vec<InputFile>, folder: &Path) -> Result<String, 
         folder.file_name().unwrap_or_default().to_string_lossy()
     );
     let is_image = |file: &InputFile| ridgeline::raster::image_format(&file.bytes).is_some();
-    let orientations = beside.into_iter().filter(|file| !is_image(file));
+    let orientations = beside.files.into_iter().filter(|file| !is_image(file));
     files.extend(orientations.map(|file| {
         let path = format!("{name}{}", file.path);
         InputFile::new(&path, file.bytes)

@@ -3,6 +3,7 @@
 //! ```text
 //! args, failure   arguments; why a command stopped
 //! walk, files     the files of a folder or archive; writing results
+//! scene_files     photographs by their first bytes, until their pixels are needed
 //! input           a scene's files, options and parameters
 //! check           the orientation check alone
 //! orient          photographs alone: their orientation
@@ -24,6 +25,7 @@ mod input;
 mod orient;
 mod reconstruct;
 mod report;
+mod scene_files;
 mod table;
 mod tiles;
 mod walk;

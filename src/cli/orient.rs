@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::execution::progress::{Listener, with_listener};
-use ridgeline::orientation::InputFile;
+use ridgeline::orientation::{FileSource, InputFile};
 use ridgeline::structure_from_motion::{
     FeatureOptions, GroundControl, OrientOptions, orient as orient_photos,
 };
@@ -26,7 +26,15 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
         ))
     })?;
     input::set_threads(args.threads);
-    let (mut photographs, seen) = files::read_scene(&args.photos, &args.out)?;
+    let (mut read, seen) = files::read_scene(&args.photos, &args.out)?;
+    for notice in seen.notices() {
+        eprintln!("warning: {notice}");
+    }
+    let seen = format!("{} holds {seen}", args.photos.display());
+    // All of them are matched.
+    let whole = read.hold(&|files| (0..files.len()).collect());
+    whole.map_err(|e| input::refusal(&e, &seen))?;
+    let mut photographs = read.files;
     if let Some(path) = &args.gcp {
         let list = fs::read(path).map_err(|e| {
             Failure::Input(format!(
@@ -37,10 +45,6 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
         photographs.retain(|file| !file.name().eq_ignore_ascii_case(GroundControl::FILE));
         photographs.push(InputFile::new(GroundControl::FILE, list));
     }
-    for notice in seen.notices() {
-        eprintln!("warning: {notice}");
-    }
-    let seen = format!("{} holds {seen}", args.photos.display());
     let defaults = FeatureOptions::default();
     let options = OrientOptions {
         features: FeatureOptions {

@@ -7,9 +7,12 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::agreement::Finding;
 use ridgeline::execution::progress::Listener;
+use ridgeline::orientation::FileSource;
 use ridgeline::pipeline::{Run, Stage, counted};
 use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{MOST_VIEWS, Project, inspect_files, load_scene, settled};
+use ridgeline::scene_loader::{
+    MOST_VIEWS, PlannedScene, Project, files_of_ground, files_of_settling, inspect_files, settled,
+};
 use ridgeline::tiles::{Area, CELL_M, refuse_corrections};
 
 use super::args::ReconstructArgs;
@@ -29,26 +32,32 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         .map_or(Ok(()), files::check_writable)?;
     let start = Instant::now();
     let OpenedScene {
-        files: input,
+        files: mut input,
         options,
         mut params,
         seen,
     } = open(&args.input, params, &args.out)?;
+    let refuse = |e: ridgeline::Error| refusal(&e, &seen);
     if let Some(method) = args.method {
         params.method = method.into();
     }
     if let Some(tile_m) = args.tile {
-        let area = Area::plan(&input, &options, &params, tile_m).map_err(|e| refusal(&e, &seen))?;
-        return tiles::reconstruct_tiles(area, &input, &args.out, &seen);
+        let area = Area::plan(&mut input, &options, &params, tile_m);
+        let area = area.map_err(refuse)?;
+        return tiles::reconstruct_tiles(area, &mut input, &args.out, &seen);
     }
-    let options = settled(&input, &options);
-    let inspection = inspect_files(&input, &options);
+    let of_settling = input.hold(&|files| files_of_settling(files, &options));
+    of_settling.map_err(refuse)?;
+    let options = settled(&input.files, &options);
+    let of_ground = input.hold(&|files| files_of_ground(files, &options));
+    of_ground.map_err(refuse)?;
+    let inspection = inspect_files(&input.files, &options);
     let is_flight = options.roi.is_none() && inspection.views > MOST_VIEWS;
     if is_flight && !options.apply_fix && args.project.is_none() {
-        refuse_corrections(&params).map_err(|e| refusal(&e, &seen))?;
+        refuse_corrections(&params).map_err(refuse)?;
         // What shows no area that three views share is told by loading it.
-        if let Ok(area) = Area::plan(&input, &options, &params, CELL_M) {
-            return tiles::reconstruct_tiles(area, &input, &args.out, &seen);
+        if let Ok(area) = Area::plan(&mut input, &options, &params, CELL_M) {
+            return tiles::reconstruct_tiles(area, &mut input, &args.out, &seen);
         }
     }
     if inspection.errors.is_empty() {
@@ -58,10 +67,11 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
             inspection.peak_mb
         );
     }
-    let scene = load_scene(&input, &options);
-    let scene = scene.map_err(|e| refusal(&e, &seen))?;
+    let planned = PlannedScene::new(&mut input, &options).map_err(refuse)?;
+    let scene = planned.load(&input.files).map_err(refuse)?;
     eprintln!("{seen}");
     // Only a project needs the files once more.
+    input.hold(&|_| Vec::new()).map_err(refuse)?;
     let input = args.project.as_ref().map(|_| input);
     let is_doubtful = !options.ignore_check && hardly_agrees(&scene);
     let load_seconds = start.elapsed().as_secs_f64();
@@ -77,13 +87,15 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
                      flight), or have the empty model written nevertheless (--ignore-check)"
                 .to_owned(),
         };
-        return Err(refusal(&error, &seen));
+        return Err(refuse(error));
     }
     let written = run.files(&seconds);
     files::write_all(&args.out, &written)?;
-    if let (Some(path), Some(input)) = (&args.project, input) {
+    if let (Some(path), Some(mut input)) = (&args.project, input) {
+        let whole = input.hold(&|files| (0..files.len()).collect());
+        whole.map_err(refuse)?;
         let project = Project::new(options, run.params().clone());
-        let packed = project.pack(&input, &written);
+        let packed = project.pack(&input.files, &written);
         files::write_one(path, packed.map_err(|e| Failure::Output(e.to_string()))?)?;
     }
     print!(

@@ -4,17 +4,17 @@ use std::path::Path;
 use std::time::Instant;
 
 use ridgeline::execution::progress::silent;
-use ridgeline::orientation::InputFile;
 use ridgeline::tiles::Area;
 
 use super::failure::Failure;
 use super::files;
 use super::input::refusal;
+use super::scene_files::SceneFiles;
 
 /// Reconstructs the tiles of an area and writes the results.
 pub(super) fn reconstruct_tiles(
     mut area: Area,
-    input: &[InputFile],
+    input: &mut SceneFiles,
     out: &Path,
     seen: &str,
 ) -> Result<(), Failure> {
@@ -25,7 +25,7 @@ pub(super) fn reconstruct_tiles(
     let mut seconds = Vec::new();
     loop {
         let start = Instant::now();
-        let Some(tile) = area.step(input, &silent()) else {
+        let Some(tile) = area.step(input, &silent()).map_err(refuse)? else {
             break;
         };
         let time = start.elapsed().as_secs_f64();

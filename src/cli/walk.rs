@@ -6,10 +6,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use ridgeline::orientation::InputFile;
 use ridgeline::scene_loader::unpack;
 
 use super::failure::Failure;
+use super::scene_files::SceneFiles;
 
 /// Extensions of images.
 const IMAGE_EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
@@ -85,10 +85,7 @@ impl fmt::Display for FolderContents {
 /// All files below `folder` that may belong to a scene, in no order; paths are relative to the
 /// folder and have forward slashes. Each folder is read once, under its own path rather than a
 /// link's. The folder `results` is left out.
-pub(super) fn walk(
-    folder: &Path,
-    results: &Path,
-) -> Result<(Vec<InputFile>, FolderContents), Failure> {
+pub(super) fn walk(folder: &Path, results: &Path) -> Result<(SceneFiles, FolderContents), Failure> {
     let mut walk = FolderWalk {
         // An empty path (no results are written) is none.
         results: fs::canonicalize(results).ok(),
@@ -102,7 +99,7 @@ pub(super) fn walk(
 }
 
 /// The files of an archive that is the whole scene.
-pub(super) fn open_archive(path: &Path) -> Result<(Vec<InputFile>, FolderContents), Failure> {
+pub(super) fn open_archive(path: &Path) -> Result<(SceneFiles, FolderContents), Failure> {
     let mut walk = FolderWalk::default();
     walk.add(path, "scene.zip")?;
     Ok((walk.files, walk.seen))
@@ -122,7 +119,7 @@ struct FolderWalk {
     /// Folders and files that were reached, as paths without links.
     reached: HashSet<PathBuf>,
     links: VecDeque<PendingLink>,
-    files: Vec<InputFile>,
+    files: SceneFiles,
     seen: FolderContents,
 }
 
@@ -218,11 +215,11 @@ impl FolderWalk {
 
     /// Adds a file, or those of an archive.
     fn add(&mut self, path: &Path, relative: &str) -> Result<(), Failure> {
-        let bytes = fs::read(path).map_err(|e| unreadable(path, e))?;
-        let unpacked = unpack(InputFile::new(relative, bytes));
+        let read = self.files.read(path, relative);
+        let unpacked = unpack(read.map_err(|e| unreadable(path, e))?);
         for file in unpacked.map_err(|e| Failure::Input(e.to_string()))? {
             *self.seen.read.entry(kind_of(&file.path)).or_default() += 1;
-            self.files.push(file);
+            self.files.files.push(file);
         }
         Ok(())
     }
@@ -266,6 +263,8 @@ fn kind_of(path: &str) -> String {
 mod tests {
     use std::os::unix::fs::symlink;
 
+    use ridgeline::orientation::InputFile;
+
     use super::*;
 
     /// A folder `scene` beside a folder `data`, of files that hold their own path.
@@ -291,7 +290,7 @@ mod tests {
         let (files, seen) = walk(&top.path().join("scene"), &results)
             .unwrap_or_else(|_| panic!("the folder can be read"));
         let shown = |f: InputFile| format!("{} = {}", f.path, String::from_utf8_lossy(&f.bytes));
-        let mut files: Vec<_> = files.into_iter().map(shown).collect();
+        let mut files: Vec<_> = files.files.into_iter().map(shown).collect();
         files.sort();
         (files, seen)
     }

@@ -2,16 +2,36 @@
 
 use std::borrow::Cow;
 
+use image::ImageFormat;
+
+use crate::error;
+use crate::raster::{image_format, image_header};
+
 /// How much of a file is inspected: enough for the longest comment header.
 pub(super) const HEAD_BYTES: usize = 64 * 1024;
 
-/// A file in memory.
+/// A file in memory: whole, or of a photograph the first bytes as long as no pixel is needed, since
+/// a flight is larger than the memory that there is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputFile {
     /// Its path within the scene, folders separated by slashes.
     pub path: String,
-    /// Its content.
+    /// Its content; of a photograph that is not filled its first bytes.
     pub bytes: Vec<u8>,
+    head: Option<Head>,
+}
+
+/// What is known of a photograph by its first bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Head {
+    /// The path under which it was read.
+    source: String,
+    /// Bytes of the head.
+    bytes: usize,
+    /// Bytes of the whole file.
+    whole: u64,
+    /// Are all of them here?
+    is_filled: bool,
 }
 
 impl InputFile {
@@ -20,7 +40,76 @@ impl InputFile {
         Self {
             path: path.replace('\\', "/"),
             bytes,
+            head: None,
         }
+    }
+
+    /// A photograph by its first bytes, `whole` being its length; the bytes again where they do not
+    /// suffice to plan with.
+    pub fn photograph(path: &str, bytes: Vec<u8>, whole: u64) -> Result<Self, Vec<u8>> {
+        // The directory of a TIFF may stand at its end.
+        let is_enough = image_format(&bytes).is_some_and(|format| format != ImageFormat::Tiff)
+            && image_header(path, &bytes).is_ok();
+        if !is_enough {
+            return Err(bytes);
+        }
+        let mut file = Self::new(path, bytes);
+        file.head = Some(Head {
+            source: file.path.clone(),
+            bytes: file.bytes.len(),
+            whole,
+            is_filled: false,
+        });
+        Ok(file)
+    }
+
+    /// Under another path.
+    pub fn renamed(self, path: &str) -> Self {
+        Self {
+            path: path.replace('\\', "/"),
+            ..self
+        }
+    }
+
+    /// Gives a photograph its whole bytes; false where it is not held by its first ones.
+    pub fn fill(&mut self, bytes: Vec<u8>) -> bool {
+        if let Some(head) = &mut self.head {
+            head.is_filled = true;
+            self.bytes = bytes;
+        }
+        self.head.is_some()
+    }
+
+    /// Leaves the first bytes of a photograph that was filled.
+    pub fn empty(&mut self) {
+        if let Some(head) = self.head.as_mut().filter(|head| head.is_filled) {
+            head.is_filled = false;
+            self.bytes.truncate(head.bytes);
+            self.bytes.shrink_to_fit();
+        }
+    }
+
+    /// The path under which a photograph was read of which only the first bytes are here.
+    pub fn lacking(&self) -> Option<&str> {
+        let head = self.head.as_ref().filter(|head| !head.is_filled)?;
+        Some(&head.source)
+    }
+
+    /// Was it filled?
+    pub fn is_filled(&self) -> bool {
+        self.head.as_ref().is_some_and(|head| head.is_filled)
+    }
+
+    /// What of it always is in memory: the first bytes of a photograph, all of another file.
+    pub fn first_bytes(&self) -> &[u8] {
+        let most = self.head.as_ref().map_or(usize::MAX, |head| head.bytes);
+        &self.bytes[..self.bytes.len().min(most)]
+    }
+
+    /// Bytes of the whole file.
+    pub fn length(&self) -> u64 {
+        let here = self.bytes.len() as u64;
+        self.head.as_ref().map_or(here, |head| head.whole)
     }
 
     /// Its name without the folder.
@@ -43,6 +132,27 @@ impl InputFile {
         let head = &self.bytes[..self.bytes.len().min(bytes)];
         let is_text = utf16(head).is_some() || !head.contains(&0);
         is_text.then(|| decoded(head))
+    }
+}
+
+/// The files of a scene, and who gives photographs their whole bytes when their pixels are needed.
+pub trait FileSource {
+    /// All files.
+    fn files(&self) -> &[InputFile];
+
+    /// Makes these files whole, by their indices, and lets go of all others; refused by name where
+    /// one cannot be had any more.
+    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<usize>) -> error::Result<()>;
+}
+
+/// Files that are whole, or were made whole before.
+impl FileSource for &[InputFile] {
+    fn files(&self) -> &[InputFile] {
+        self
+    }
+
+    fn hold(&mut self, _: &dyn Fn(&[InputFile]) -> Vec<usize>) -> error::Result<()> {
+        Ok(())
     }
 }
 
@@ -105,6 +215,35 @@ pub(crate) fn stem(path: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_photograph_is_whole_only_while_it_is_filled() {
+        let mut png = std::io::Cursor::new(Vec::new());
+        let image = image::RgbImage::from_fn(40, 30, |x, y| image::Rgb([x as u8, y as u8, 7]));
+        image.write_to(&mut png, ImageFormat::Png).unwrap();
+        let png = png.into_inner();
+        let length = png.len() as u64;
+        // The length and sum of the first chunk end at byte 33.
+        let cut = png[..20].to_vec();
+        assert_eq!(
+            InputFile::photograph("a.png", cut.clone(), length),
+            Err(cut)
+        );
+        let text = b"1 2 3".to_vec();
+        assert!(InputFile::photograph("a.txt", text, 100).is_err());
+        let file = InputFile::photograph("in\\a.png", png[..60].to_vec(), length).unwrap();
+        let mut file = file.renamed("b.png");
+        let head = file.clone();
+        assert_eq!((&*file.path, file.lacking()), ("b.png", Some("in/a.png")));
+        assert_eq!((file.length(), file.is_filled()), (length, false));
+        assert!(file.fill(png.clone()));
+        assert_eq!((&file.bytes, file.lacking()), (&png, None));
+        assert_eq!((file.length(), file.is_filled()), (length, true));
+        assert_eq!(file.first_bytes(), &png[..60]);
+        file.empty();
+        assert_eq!(file, head);
+        assert!(!InputFile::new("a.txt", Vec::new()).fill(png));
+    }
 
     #[test]
     fn text_is_read_in_the_encodings_of_windows() {

@@ -1,7 +1,7 @@
 //! Orientation files: recognised by their content, read into one form.
 //!
 //! ```text
-//! input_file         a file in memory
+//! input_file         a file in memory, or the first bytes of a photograph
 //! image_orientation  interior and exterior orientation of one image: what every reader returns
 //! angles             omega, phi, kappa and their units
 //! geodesy            the ellipsoid, and the anchor of a local frame on it
@@ -58,8 +58,8 @@ pub use format::Format;
 pub use geodesy::Anchor;
 pub(crate) use geodesy::geocentric_of;
 pub use image_orientation::{Crop, Orientation};
-pub use input_file::InputFile;
 pub(crate) use input_file::stem;
+pub use input_file::{FileSource, InputFile};
 pub use metric_frame::to_metric_frame;
 pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};

@@ -134,6 +134,21 @@ pub fn ground_files(files: &[InputFile], options: &LoadOptions, area: [f64; 4]) 
     files_near(&whole_plan(files, options), Some(middle_of(area)))
 }
 
+/// Indices of the files in whose pixels [`settled`] and
+/// [`ShownArea`](super::ShownArea) measure the height of the ground: none where nothing is open. Of
+/// the files their first bytes suffice.
+pub fn files_of_settling(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
+    let is_settled = options.reduction.is_some() && options.roi.is_some();
+    if options.ground_z.is_some() || is_settled {
+        return Vec::new();
+    }
+    let whole = whole_plan(files, options);
+    match options.roi.is_some() && are_small(&whole) {
+        true => Vec::new(),
+        false => files_near(&whole, None),
+    }
+}
+
 /// Indices of the files in whose pixels loading measures the height of the ground, before it
 /// decides by how much photographs are reduced, and before it chooses views: none where both are
 /// known. Of the files their first bytes suffice. Flights state the first: see [`settled`].

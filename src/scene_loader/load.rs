@@ -2,15 +2,16 @@
 
 use super::checks::check_and_correct;
 use super::decode::decode_all;
-use super::ground::{plan_scene, settled, whole_plan};
+use super::ground::{files_of_ground, files_of_settling, plan_scene, settled, whole_plan};
 use super::input::LoadOptions;
 use super::known_files::read_known;
+use super::plan::Plan;
 use super::planned_view::PlannedView;
 use super::region;
 use crate::agreement::{AgreementReport, Finding};
 use crate::error::{Error, Result};
 use crate::known::{Known, WorldSystem};
-use crate::orientation::InputFile;
+use crate::orientation::{FileSource, InputFile};
 use crate::orientation_check::CheckedView;
 use crate::raster::Gray;
 use crate::scene::{Scene, Survey, View};
@@ -18,7 +19,38 @@ use crate::scene::{Scene, Survey, View};
 /// Reads a scene. The first refusal is returned; [`inspect_files`](super::inspect_files) lists them
 /// all.
 pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
-    let plan = plan_scene(files, options);
+    load_planned(plan_scene(files, options), files, options)
+}
+
+/// A scene that is planned, the photographs of its views being whole.
+pub struct PlannedScene {
+    plan: Plan,
+    options: LoadOptions,
+}
+
+impl PlannedScene {
+    /// Plans a scene of files of which the photographs are made whole as their pixels are needed.
+    /// An error says which of them cannot be had; a scene that is refused is so by `load`.
+    pub fn new(source: &mut dyn FileSource, options: &LoadOptions) -> Result<Self> {
+        source.hold(&|files| files_of_settling(files, options))?;
+        let options = settled(source.files(), options);
+        source.hold(&|files| files_of_ground(files, &options))?;
+        let plan = plan_scene(source.files(), &options);
+        let is_refused = !plan.errors.is_empty() && !plan.is_implausible;
+        source.hold(&|_| match is_refused {
+            true => Vec::new(),
+            false => plan.views.iter().map(|view| view.file).collect(),
+        })?;
+        Ok(Self { plan, options })
+    }
+
+    /// Reads the scene, as [`load_scene`] does, of the files of the same source.
+    pub fn load(self, files: &[InputFile]) -> Result<Scene> {
+        load_planned(self.plan, files, &self.options)
+    }
+}
+
+fn load_planned(plan: Plan, files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
     let refusal = plan.errors.into_iter().next();
     if let Some(error) = refusal.clone().filter(|_| !plan.is_implausible) {
         return Err(error);
@@ -115,4 +147,79 @@ pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> 
         warnings: [plan.warnings, plan.placement_warnings].concat(),
         survey: plan.survey,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{gable_scene, to_files};
+
+    /// Photographs by the first half of their bytes, and as a whole.
+    struct Halves {
+        whole: Vec<InputFile>,
+        files: Vec<InputFile>,
+        /// How many were filled at the same time.
+        most: usize,
+    }
+
+    impl FileSource for Halves {
+        fn files(&self) -> &[InputFile] {
+            &self.files
+        }
+
+        fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<usize>) -> Result<()> {
+            let needed = needed(&self.files);
+            for (i, file) in self.files.iter_mut().enumerate() {
+                match needed.contains(&i) {
+                    true => file.fill(self.whole[i].bytes.clone()),
+                    false => {
+                        file.empty();
+                        false
+                    }
+                };
+            }
+            let filled = self.files.iter().filter(|file| file.is_filled()).count();
+            self.most = self.most.max(filled);
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn photographs_are_whole_only_as_their_pixels_are_needed() {
+        let (scene, truth) = gable_scene(96);
+        let whole: Vec<InputFile> = (to_files(&scene).iter())
+            .map(|(path, bytes)| InputFile::new(path, bytes.clone()))
+            .collect();
+        let half = |file: &InputFile| {
+            let bytes = file.bytes[..file.bytes.len() / 2].to_vec();
+            InputFile::photograph(&file.path, bytes, file.length()).unwrap_or(file.clone())
+        };
+        let files: Vec<InputFile> = whole.iter().map(half).collect();
+        let images = files.iter().filter(|file| file.lacking().is_some());
+        assert_eq!(images.count(), 6);
+        let [x, y, z] = scene.origin.into();
+        // The ground is measured in four photographs, unless it is stated.
+        for (ground_z, most) in [(None, 4), (Some(z + truth.ground_z), 3)] {
+            let options = LoadOptions {
+                orientation: Some("colmap".to_owned()),
+                roi: Some([x - 12.0, y - 12.0, x + 12.0, y + 12.0]),
+                max_views: Some(3),
+                ground_z,
+                ..LoadOptions::default()
+            };
+            let mut halves = Halves {
+                whole: whole.clone(),
+                files: files.clone(),
+                most: 0,
+            };
+            let planned = PlannedScene::new(&mut halves, &options).unwrap();
+            let loaded = planned.load(halves.files()).unwrap();
+            let expected = load_scene(&whole, &options).unwrap();
+            assert_eq!(loaded.warnings, expected.warnings);
+            assert_eq!((loaded.views.len(), halves.most), (3, most));
+            for (a, b) in loaded.views.iter().zip(&expected.views) {
+                assert_eq!((&a.name, &a.camera, &a.rgb), (&b.name, &b.camera, &b.rgb));
+            }
+        }
+    }
 }

@@ -21,9 +21,15 @@ const MEMORY_BYTES: u64 = if cfg!(target_arch = "wasm32") {
     32 << 30
 };
 
-/// Peak memory of a run with these views, bytes, the files included.
+/// Peak memory of a run with these views, bytes: photographs are whole where they are views.
 pub(crate) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
-    let read: u64 = files.iter().map(|f| f.bytes.len() as u64).sum();
+    let heads: u64 = files.iter().map(|f| f.first_bytes().len() as u64).sum();
+    let mut filled: Vec<usize> = views.iter().map(|v| v.file).collect();
+    filled.sort_unstable();
+    filled.dedup();
+    let filled = filled.iter().map(|&i| &files[i]);
+    let filled = filled.map(|f| f.length().saturating_sub(f.first_bytes().len() as u64));
+    let read = heads + filled.sum::<u64>();
     let kept: u64 = views.iter().map(|v| v.pixels() * BYTES_PER_PIXEL).sum();
     let decoding = views.iter().map(|v| {
         let chunk = decoding_bytes(&files[v.file].bytes, v.size);

@@ -44,13 +44,15 @@ mod tests;
 
 pub use archive::unpack;
 pub use candidate::OrientationCandidate;
-pub use ground::{files_of_ground, files_of_views, ground_files, ground_heights, settled};
+pub use ground::{
+    files_of_ground, files_of_settling, files_of_views, ground_files, ground_heights, settled,
+};
 pub use input::LoadOptions;
 pub use inspect::{
     FileReport, Flight, FlightOverview, Footprint, GroundSource, ImageReport, Inspection, Overlap,
     ShownArea, ViewWindow, inspect_files, region_windows,
 };
-pub use load::{load_scene, whole_views};
+pub use load::{PlannedScene, load_scene, whole_views};
 #[cfg(target_arch = "wasm32")]
 pub(crate) use project::SHOWN;
 pub use project::{Project, open_project};

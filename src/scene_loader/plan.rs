@@ -269,7 +269,7 @@ impl Plan {
 
     fn image_candidates<'a>(&self, files: &'a [InputFile]) -> Vec<ImageCandidate<'a>> {
         let candidate = |image: &PlannedImage| {
-            let InputFile { path, bytes } = &files[image.file];
+            let InputFile { path, bytes, .. } = &files[image.file];
             ImageCandidate {
                 path,
                 size: image.header.map(|h| [h.width, h.height]),

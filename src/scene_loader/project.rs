@@ -129,10 +129,8 @@ pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Pro
                 project.shown = f.bytes;
                 return None;
             }
-            Some(InputFile {
-                path: f.path.strip_prefix(&input)?.to_owned(),
-                bytes: f.bytes,
-            })
+            let path = f.path.strip_prefix(&input)?.to_owned();
+            Some(f.renamed(&path))
         })
         .collect();
     Ok((inputs, Some(project)))

@@ -1,7 +1,7 @@
 //! A large area, worked off tile by tile: the command line and the page both go this way.
 //!
-//! Only one cell is in memory at a time, beside what earlier ones found: its views are read anew
-//! from the files.
+//! Only one cell is in memory at a time, beside what earlier ones found and the first bytes of all
+//! photographs: its views are read anew from the files.
 
 use std::sync::Arc;
 
@@ -14,11 +14,13 @@ use crate::error::{Error, Result};
 use crate::execution::Listener;
 use crate::ids::ViewId;
 use crate::objectspace::{image_segments, world_lines};
-use crate::orientation::InputFile;
+use crate::orientation::{FileSource, InputFile};
 use crate::params::{Method, Params};
 use crate::pipeline::{Run, Stage, counted};
 use crate::scene::{Scene, View};
-use crate::scene_loader::{LoadOptions, ShownArea, load_scene, settled, whole_views};
+use crate::scene_loader::{
+    LoadOptions, PlannedScene, ShownArea, files_of_settling, settled, whole_views,
+};
 use crate::texture::texture_model;
 
 /// An area, its tiles, and what those that are done have found.
@@ -49,13 +51,14 @@ impl Area {
     /// Divides the region of interest into tiles of about `tile_m` metres; without a region the
     /// area that three views show.
     pub fn plan(
-        files: &[InputFile],
+        source: &mut dyn FileSource,
         options: &LoadOptions,
         params: &Params,
         tile_m: f64,
     ) -> Result<Self> {
         refuse_corrections(params)?;
-        let (options, tiles) = tiles_of(files, options, tile_m)?;
+        let (options, tiles) = tiles_of(source, options, tile_m)?;
+        let files = source.files();
         Ok(Self {
             sum: sum_of(files, &options, params, &tiles),
             tiles,
@@ -91,17 +94,24 @@ impl Area {
     }
 
     /// Works off the next tile; `None` when all are done. A tile that the views do not show is left
-    /// out. `progress` hears fractions of this tile's work.
-    pub fn step(&mut self, files: &[InputFile], progress: &Listener) -> Option<&TileReport> {
-        let tile = self.tiles.get(self.reports.len())?;
+    /// out; an error says which photograph cannot be had any more. `progress` hears fractions of
+    /// this tile's work.
+    pub fn step(
+        &mut self,
+        source: &mut dyn FileSource,
+        progress: &Listener,
+    ) -> Result<Option<&TileReport>> {
+        let Some(tile) = self.tiles.get(self.reports.len()) else {
+            return Ok(None);
+        };
         let (options, params, whole) = (&self.options, &self.params, &self.whole);
-        let worked = work_off(files, options, params, tile, whole, progress);
+        let worked = work_off(source, options, params, tile, whole, progress)?;
         self.parts.extend(worked.parts);
         if let Some(error) = worked.first_error {
             self.first_error.get_or_insert(error);
         }
         self.reports.push(worked.report);
-        self.reports.last()
+        Ok(self.reports.last())
     }
 
     /// One model of all tiles, as files; the first error where no tile could be read. `seconds`
@@ -115,8 +125,8 @@ impl Area {
     }
 }
 
-/// CRC-32 of the version, the options, the parameters, the tiles and the files, of which the first
-/// bytes may stand for all.
+/// CRC-32 of the version, the options, the parameters, the tiles and the files; of photographs the
+/// first bytes may stand for all.
 fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params, tiles: &[Tile]) -> u32 {
     #[derive(Serialize)]
     struct Made<'a> {
@@ -132,7 +142,7 @@ fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params, tiles: &[
         params,
         tiles,
         files: (files.iter())
-            .map(|file| (&*file.path, crc32fast::hash(&file.bytes)))
+            .map(|file| (&*file.path, crc32fast::hash(file.first_bytes())))
             .collect(),
     };
     crc32fast::hash(&serde_json::to_vec(&made).expect("all keys are strings"))
@@ -154,7 +164,7 @@ pub fn refuse_corrections(params: &Params) -> Result<()> {
 /// The tiles of the region of interest, or of the area that the views show, and the options with
 /// all that is decided once for the whole area; refused where the options do not go with tiles.
 pub(super) fn tiles_of(
-    files: &[InputFile],
+    source: &mut dyn FileSource,
     options: &LoadOptions,
     tile_m: f64,
 ) -> Result<(LoadOptions, Vec<Tile>)> {
@@ -164,6 +174,8 @@ pub(super) fn tiles_of(
             advice: "correct it first (without tiles, --apply-fix names the mistake)".to_owned(),
         });
     }
+    source.hold(&|files| files_of_settling(files, options))?;
+    let files = source.files();
     let mut options = settled(files, options);
     if let Some(roi) = options.roi {
         return Ok((options, plan_tiles(roi, tile_m)?));
@@ -187,15 +199,16 @@ pub(super) struct WorkedTile {
     pub first_error: Option<Error>,
 }
 
-/// Works off the cells of a tile, one after the other.
+/// Works off the cells of a tile, one after the other: the photographs of one are whole until those
+/// of the next one are known. An error says which photograph cannot be had.
 pub(super) fn work_off(
-    files: &[InputFile],
+    source: &mut dyn FileSource,
     options: &LoadOptions,
     params: &Params,
     tile: &Tile,
     whole: &Scene,
     progress: &Listener,
-) -> WorkedTile {
+) -> Result<WorkedTile> {
     let mut parts = Vec::new();
     let mut first_error = None;
     let count = tile.cells.len() as f64;
@@ -206,7 +219,8 @@ pub(super) fn work_off(
         };
         let of_tile = Listener::clone(progress);
         let listener: Listener = Arc::new(move |fraction| of_tile((i as f64 + fraction) / count));
-        match load_scene(files, &options) {
+        let planned = PlannedScene::new(source, &options)?;
+        match planned.load(source.files()) {
             Ok(scene) => parts.push(part(scene, params, cell, whole, &listener)),
             Err(error) => {
                 first_error.get_or_insert(error);
@@ -214,17 +228,18 @@ pub(super) fn work_off(
         }
         listener(1.0);
     }
+    source.hold(&|_| Vec::new())?;
     let buildings = parts.iter().map(|part| part.model.buildings.len()).sum();
     let outcome = match &first_error {
         Some(error) if parts.is_empty() => error.to_string(),
         _ => counted(buildings, "buildings"),
     };
     let core = tile.core;
-    WorkedTile {
+    Ok(WorkedTile {
         report: TileReport { core, outcome },
         parts,
         first_error,
-    }
+    })
 }
 
 /// Joins the parts of all cells in the order of the grid, whatever the tiles were.

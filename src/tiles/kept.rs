@@ -27,13 +27,14 @@ impl Area {
     /// Works off a tile: its outcome as bytes; `None` where there is no such tile.
     pub fn work_off(
         &self,
-        files: &[InputFile],
+        mut files: &[InputFile],
         index: usize,
         progress: &Listener,
     ) -> Option<Vec<u8>> {
         let tile = self.tiles.get(index)?;
         let (options, params) = (&self.options, &self.params);
-        let worked = work_off(files, options, params, tile, &self.whole, progress);
+        let worked = work_off(&mut files, options, params, tile, &self.whole, progress)
+            .expect("files in memory can be had");
         let outcome = TileOutcome {
             report: worked.report,
             parts: worked.parts,
@@ -91,14 +92,20 @@ mod tests {
     }
 
     /// Two tiles that no view shows: nothing is computed.
-    fn area(files: &[InputFile], east: f64) -> Area {
+    fn area(mut files: &[InputFile], east: f64) -> Area {
         let options = LoadOptions {
             orientation: Some("colmap".to_owned()),
             roi: Some([5040.0, 0.0, 5040.0 + east, 50.0]),
             ground_z: Some(0.0),
             ..LoadOptions::default()
         };
-        Area::plan(files, &options, &crate::params::Params::default(), 60.0).unwrap()
+        Area::plan(
+            &mut files,
+            &options,
+            &crate::params::Params::default(),
+            60.0,
+        )
+        .unwrap()
     }
 
     #[test]

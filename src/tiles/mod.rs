@@ -31,5 +31,5 @@ mod tile;
 
 pub use area::{Area, TileReport, refuse_corrections};
 pub use join::{CellPart, Joined, join};
-pub use plan::{BlockPlan, BlockSource, InputStamp, PlannedCell, PlannedTile};
+pub use plan::{BlockPlan, BlockSource, HeadStamp, InputStamp, PlannedCell, PlannedTile};
 pub use tile::{CELL_M, Cell, MARGIN_M, Tile, plan_tiles};

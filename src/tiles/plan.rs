@@ -1,13 +1,16 @@
 //! The tiles of a block as a file, so that many processes, on as many computers as there are, make
 //! one part each, and one joins them.
 //!
-//! The plan names every input file with its length and sum, so that a part made from anything else
-//! is refused by the file's name; a part names the plan by the sum of the plan's file.
+//! The plan names every input file with its length and sum, of large photographs that of their
+//! first bytes, too. Each step compares all that it reads with these, so that a part made from
+//! anything else is refused by the file's name; a part names the plan by the sum of the plan's
+//! file.
 //!
 //! Invariant: the same plan and inputs give the same bytes of a part, and all parts the model that
 //! [`Area`](super::Area) makes in one process.
 
 use std::collections::BTreeMap;
+use std::io::{self, Read};
 
 use serde::{Deserialize, Serialize};
 
@@ -18,9 +21,13 @@ use super::tile::{Cell, Tile};
 use crate::error::{Error, Result};
 use crate::execution::Listener;
 use crate::export::city_json_seq;
-use crate::orientation::InputFile;
+use crate::orientation::{FileSource, InputFile};
 use crate::params::Params;
-use crate::scene_loader::{LoadOptions, ViewWindow, region_windows, whole_views};
+use crate::scene_loader::{LoadOptions, ViewWindow, files_of_ground, region_windows, whole_views};
+
+/// Cells that are planned at the same time. Assumption: enough for the cores of a machine, and few
+/// enough for its memory, since neighbours measure the ground in the same photographs.
+const CELLS_AT_A_TIME: usize = 8;
 
 /// Where the files of a block came from, as it was stated: to find them again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -46,6 +53,100 @@ pub struct InputStamp {
     /// CRC-32 of its bytes. It tells accidents, not forgers; every change within 32 neighbouring
     /// bits is found, of others all but one in four thousand million.
     pub crc32: u32,
+    /// Of a photograph the first bytes, where steps that need no pixel of it read no more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub head: Option<HeadStamp>,
+}
+
+/// The first bytes of a photograph as they were when the plan was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HeadStamp {
+    /// How many they are.
+    pub bytes: u64,
+    /// Their CRC-32.
+    pub crc32: u32,
+}
+
+impl InputStamp {
+    /// The stamp of a file that is whole.
+    pub fn of_whole(file: &InputFile) -> Self {
+        Self::new(file, file.bytes.len() as u64, crc32fast::hash(&file.bytes))
+    }
+
+    /// The stamp of a photograph of which the first bytes are in memory; `whole` reads all of them.
+    pub fn of_stream(file: &InputFile, mut whole: impl Read) -> io::Result<Self> {
+        let (mut sum, mut length) = (crc32fast::Hasher::new(), 0);
+        let mut chunk = vec![0; 1 << 18];
+        loop {
+            match whole.read(&mut chunk) {
+                Ok(0) => return Ok(Self::new(file, length, sum.finalize())),
+                Ok(read) => {
+                    sum.update(&chunk[..read]);
+                    length += read as u64;
+                }
+                Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
+                Err(e) => return Err(e),
+            }
+        }
+    }
+
+    fn new(file: &InputFile, bytes: u64, crc32: u32) -> Self {
+        let head = HeadStamp {
+            bytes: file.first_bytes().len() as u64,
+            crc32: crc32fast::hash(file.first_bytes()),
+        };
+        Self {
+            file: file.path.clone(),
+            bytes,
+            crc32,
+            head: (head.bytes < bytes).then_some(head),
+        }
+    }
+
+    /// Is a file as it was, as far as it is in memory?
+    fn is_of(&self, file: &InputFile) -> bool {
+        if file.lacking().is_none() {
+            let bytes = &file.bytes;
+            return (self.bytes, self.crc32) == (bytes.len() as u64, crc32fast::hash(bytes));
+        }
+        Self::new(file, file.length(), self.crc32) == *self
+    }
+
+    fn refuse(&self, problem: &str) -> Error {
+        Error::File {
+            file: self.file.clone(),
+            problem: problem.to_owned(),
+            advice: "put back what the plan was made from, or plan again (ridgeline plan)"
+                .to_owned(),
+        }
+    }
+
+    fn refuse_changed(&self) -> Error {
+        self.refuse("the file has changed since the plan was made")
+    }
+}
+
+/// The files of a plan, in its order; what becomes whole is compared with it.
+struct Compared<'a> {
+    source: &'a mut dyn FileSource,
+    inputs: &'a [InputStamp],
+}
+
+impl FileSource for Compared<'_> {
+    fn files(&self) -> &[InputFile] {
+        self.source.files()
+    }
+
+    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<usize>) -> Result<()> {
+        self.source.hold(needed)?;
+        let held = self.inputs.iter().zip(self.source.files());
+        let mut filled = held.filter(|(_, file)| file.is_filled());
+        match filled.find(|(stamp, file)| !stamp.is_of(file)) {
+            Some((stamp, _)) => Err(stamp.refuse_changed()),
+            None => Ok(()),
+        }
+    }
 }
 
 /// A tile of a plan.
@@ -103,24 +204,26 @@ impl BlockPlan {
 
     /// Divides the region of interest into tiles of about `tile_m` metres; without a region the
     /// area that three views show. A few photographs are decoded, which show where the ground is.
+    /// `inputs` are the stamps of all files.
     pub fn new(
         source: BlockSource,
-        files: &[InputFile],
+        files: &mut dyn FileSource,
+        inputs: Vec<InputStamp>,
         options: &LoadOptions,
         params: &Params,
         tile_m: f64,
     ) -> Result<Self> {
         refuse_corrections(params)?;
         let (options, tiles) = tiles_of(files, options, tile_m)?;
-        whole_views(files, &options)?;
-        let planned = crate::execution::map(&tiles, |i, tile| planned(files, &options, i, tile));
+        whole_views(files.files(), &options)?;
+        let planned = planned(files, &options, &tiles)?;
         Ok(Self {
             ridgeline: env!("CARGO_PKG_VERSION").to_owned(),
             source,
             tile_m,
             options,
             params: params.clone(),
-            inputs: files.iter().map(stamp).collect(),
+            inputs,
             tiles: planned,
         })
     }
@@ -180,23 +283,28 @@ impl BlockPlan {
         Some(outcome.report.outcome)
     }
 
-    /// Works off a tile: its part as a file, and the outcome in words. `text` is the plan's file.
+    /// Works off a tile: its part as a file, and the outcome in words. `text` is the plan's file;
+    /// the files are those of [`Self::unchanged`], and photographs that have changed beyond their
+    /// first bytes are refused when they become whole.
     pub fn work_off(
         &self,
         text: &[u8],
         tile: u32,
-        files: Vec<InputFile>,
+        files: &mut dyn FileSource,
         progress: &Listener,
     ) -> Result<(Vec<u8>, String)> {
         let planned = self.planned(tile)?;
-        let files = self.unchanged(files)?;
-        let whole = whole_views(&files, &self.options)?;
+        let whole = whole_views(files.files(), &self.options)?;
+        let mut files = Compared {
+            source: files,
+            inputs: &self.inputs,
+        };
         let place = Tile {
             core: planned.core,
             cells: planned.cells.iter().map(|cell| cell.place).collect(),
         };
         let (options, params) = (&self.options, &self.params);
-        let worked = work_off(&files, options, params, &place, &whole, progress);
+        let worked = work_off(&mut files, options, params, &place, &whole, progress)?;
         let words = worked.report.outcome.clone();
         let outcome = TileOutcome {
             report: worked.report,
@@ -205,12 +313,13 @@ impl BlockPlan {
         Ok((key(text, tile).pack(&outcome), words))
     }
 
-    /// One model of all parts, as files. `part` has the bytes of a tile's part, if there is one;
-    /// missing, damaged and foreign ones are refused by name.
+    /// One model of all parts, as files. Of the scene's files, those of [`Self::unchanged`], no
+    /// pixel is needed. `part` has the bytes of a tile's part, if there is one; missing, damaged
+    /// and foreign ones are refused by name.
     pub fn join(
         &self,
         text: &[u8],
-        files: Vec<InputFile>,
+        files: &[InputFile],
         part: impl Fn(u32) -> Option<Vec<u8>>,
     ) -> Result<Vec<(String, Vec<u8>)>> {
         let bytes: Vec<Option<Vec<u8>>> = self.tiles.iter().map(|t| part(t.tile)).collect();
@@ -221,8 +330,7 @@ impl BlockPlan {
         if let Some(first) = missing.first() {
             return Err(missing_parts(&missing, *first));
         }
-        let files = self.unchanged(files)?;
-        let whole = whole_views(&files, &self.options)?;
+        let whole = whole_views(files, &self.options)?;
         let mut reports = Vec::new();
         let mut parts = Vec::new();
         for (planned, bytes) in self.tiles.iter().zip(bytes.iter().flatten()) {
@@ -258,36 +366,22 @@ impl BlockPlan {
         })
     }
 
-    /// The files of the plan among these; refused by name where one is missing or has changed. What
-    /// has come since is left out: results, for example.
-    fn unchanged(&self, files: Vec<InputFile>) -> Result<Vec<InputFile>> {
+    /// The files of the plan among these, in its order; refused by name where one is missing or
+    /// has changed, as far as it is in memory. What has come since is left out: results, for
+    /// example.
+    pub fn unchanged(&self, files: Vec<InputFile>) -> Result<Vec<InputFile>> {
         let mut files: BTreeMap<String, InputFile> = (files.into_iter())
             .map(|file| (file.path.clone(), file))
             .collect();
         let mut same = |planned: &InputStamp| {
-            let refuse = |problem: &str| Error::File {
-                file: planned.file.clone(),
-                problem: problem.to_owned(),
-                advice: "put back what the plan was made from, or plan again (ridgeline plan)"
-                    .to_owned(),
-            };
-            let found = files.remove(&planned.file);
-            let file =
-                found.ok_or_else(|| refuse("the file is missing since the plan was made"))?;
-            match stamp(&file) == *planned {
+            let file = (files.remove(&planned.file))
+                .ok_or_else(|| planned.refuse("the file is missing since the plan was made"))?;
+            match planned.is_of(&file) {
                 true => Ok(file),
-                false => Err(refuse("the file has changed since the plan was made")),
+                false => Err(planned.refuse_changed()),
             }
         };
         self.inputs.iter().map(&mut same).collect()
-    }
-}
-
-fn stamp(file: &InputFile) -> InputStamp {
-    InputStamp {
-        file: file.path.clone(),
-        bytes: file.bytes.len() as u64,
-        crc32: crc32fast::hash(&file.bytes),
     }
 }
 
@@ -296,24 +390,50 @@ fn key(plan: &[u8], tile: u32) -> PartKey {
     PartKey { plan, tile }
 }
 
-fn planned(files: &[InputFile], options: &LoadOptions, index: usize, tile: &Tile) -> PlannedTile {
-    let cells: Vec<PlannedCell> = (tile.cells.iter())
-        .map(|cell| planned_cell(files, options, cell))
-        .collect();
-    PlannedTile {
-        tile: u32::try_from(index + 1).expect("fewer than 2^32 tiles"),
-        core: tile.core,
-        memory_mb: cells.iter().map(|cell| cell.memory_mb).max().unwrap_or(0),
-        cells,
+/// The tiles with what each of their cells reads.
+fn planned(
+    source: &mut dyn FileSource,
+    options: &LoadOptions,
+    tiles: &[Tile],
+) -> Result<Vec<PlannedTile>> {
+    let all: Vec<Cell> = tiles.iter().flat_map(|tile| tile.cells.clone()).collect();
+    let mut cells = Vec::new();
+    // The photographs that show the ground of so many cells are whole at a time.
+    for some in all.chunks(CELLS_AT_A_TIME) {
+        source.hold(&|files| {
+            let of_cell =
+                |_: usize, cell: &Cell| files_of_ground(files, &options_of(cell, options));
+            let needed = crate::execution::map(some, of_cell);
+            needed.into_iter().flatten().collect()
+        })?;
+        let files = source.files();
+        let of_cell = |_: usize, cell: &Cell| planned_cell(files, options, cell);
+        cells.extend(crate::execution::map(some, of_cell));
+    }
+    source.hold(&|_| Vec::new())?;
+    let mut cells = cells.into_iter();
+    let tile = |(index, tile): (usize, &Tile)| {
+        let cells: Vec<PlannedCell> = cells.by_ref().take(tile.cells.len()).collect();
+        PlannedTile {
+            tile: u32::try_from(index + 1).expect("fewer than 2^32 tiles"),
+            core: tile.core,
+            memory_mb: cells.iter().map(|cell| cell.memory_mb).max().unwrap_or(0),
+            cells,
+        }
+    };
+    Ok(tiles.iter().enumerate().map(tile).collect())
+}
+
+fn options_of(cell: &Cell, options: &LoadOptions) -> LoadOptions {
+    LoadOptions {
+        roi: Some(cell.region),
+        ..options.clone()
     }
 }
 
 fn planned_cell(files: &[InputFile], options: &LoadOptions, cell: &Cell) -> PlannedCell {
-    let options = LoadOptions {
-        roi: Some(cell.region),
-        ..options.clone()
-    };
-    let (views, memory_mb, left_out) = match region_windows(files, &options) {
+    let windows = region_windows(files, &options_of(cell, options));
+    let (views, memory_mb, left_out) = match windows {
         Ok((views, memory_mb)) => (views, memory_mb, None),
         Err(error) => (Vec::new(), 0, Some(error.to_string())),
     };

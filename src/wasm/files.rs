@@ -1,13 +1,10 @@
 //! The session's photographs, whole only while a call needs their pixels.
 
-use image::ImageFormat;
 use wasm_bindgen::prelude::*;
 
 use super::convert::named_error;
-use super::heads::Head;
 use super::session::{Session, load_options};
 use crate::orientation::InputFile;
-use crate::raster::{image_format, image_header};
 use crate::scene_loader::{files_of_ground, files_of_views};
 
 #[wasm_bindgen]
@@ -16,51 +13,31 @@ impl Session {
     /// suffice to plan with.
     #[wasm_bindgen(js_name = addHead)]
     pub fn add_head(&mut self, path: &str, bytes: Vec<u8>, whole: f64) -> bool {
-        let file = InputFile::new(path, bytes);
-        // The directory of a TIFF may stand at its end.
-        let is_enough = image_format(&file.bytes).is_some_and(|format| format != ImageFormat::Tiff)
-            && image_header(&file.path, &file.bytes).is_ok();
-        if is_enough {
-            let head = Head {
-                bytes: file.bytes.len(),
-                whole: whole as u64,
-                is_filled: false,
-            };
-            self.heads.0.insert(file.path.clone(), head);
-            self.put(file);
-        }
-        is_enough
+        let file = InputFile::photograph(path, bytes, whole as u64);
+        file.map(|file| self.put(file)).is_ok()
     }
 
     /// Gives a photograph its whole bytes.
     #[wasm_bindgen(js_name = fillFile)]
     pub fn fill_file(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), JsValue> {
-        let file = InputFile::new(path, bytes);
-        let head = (self.heads.0.get_mut(&file.path))
-            .ok_or_else(|| named_error("RangeError", &format!("{path} is not lacking")))?;
-        head.is_filled = true;
-        self.put(file);
-        Ok(())
+        let mut added = self.files.iter_mut().filter(|file| file.path == path);
+        match added.next().is_some_and(|file| file.fill(bytes)) {
+            true => Ok(()),
+            false => Err(named_error("RangeError", &format!("{path} is not lacking"))),
+        }
     }
 
     /// Leaves the first bytes of all photographs that were filled.
     #[wasm_bindgen(js_name = emptyFiles)]
     pub fn empty_files(&mut self) {
-        for file in &mut self.files {
-            let head = self.heads.0.get_mut(&file.path);
-            if let Some(head) = head.filter(|head| head.is_filled) {
-                head.is_filled = false;
-                file.bytes.truncate(head.bytes);
-                file.bytes.shrink_to_fit();
-            }
-        }
+        self.files.iter_mut().for_each(InputFile::empty);
     }
 
     /// The paths of all photographs that are not whole.
     #[wasm_bindgen(js_name = lackingFiles)]
     pub fn lacking_files(&self) -> Vec<String> {
         let all: Vec<usize> = (0..self.files.len()).collect();
-        self.heads.lacking(&self.files, &all)
+        self.lacking(&all)
     }
 
     /// The paths of the photographs that `load` needs first, to measure the ground: to be filled.
@@ -70,7 +47,7 @@ impl Session {
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
     ) -> Result<Vec<String>, JsValue> {
         let needed = files_of_ground(&self.files, &load_options(&options)?);
-        Ok(self.heads.lacking(&self.files, &needed))
+        Ok(self.lacking(&needed))
     }
 
     /// The paths of the photographs that `load` makes views of, once the others are filled.
@@ -80,6 +57,15 @@ impl Session {
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
     ) -> Result<Vec<String>, JsValue> {
         let needed = files_of_views(&self.files, &load_options(&options)?);
-        Ok(self.heads.lacking(&self.files, &needed))
+        Ok(self.lacking(&needed))
+    }
+}
+
+impl Session {
+    /// The paths of those among these files that are not whole.
+    pub(crate) fn lacking(&self, of: &[usize]) -> Vec<String> {
+        let files = of.iter().map(|&i| &self.files[i]);
+        let lacking = files.filter(|file| file.lacking().is_some());
+        lacking.map(|file| file.path.clone()).collect()
     }
 }

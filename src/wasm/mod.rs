@@ -19,8 +19,6 @@ mod corrections;
 mod figures;
 #[cfg(feature = "reconstruction")]
 mod files;
-#[cfg(feature = "reconstruction")]
-mod heads;
 #[cfg(not(feature = "reconstruction"))]
 mod orienter;
 #[cfg(feature = "reconstruction")]

@@ -5,14 +5,13 @@ use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
 use super::convert::{ViewInfo, from_js, input_error, listener_of, named_error, to_js};
-use super::heads::Heads;
 use crate::execution::MergedShards;
 use crate::orientation::InputFile;
 use crate::params::Params;
 use crate::pipeline::{PackedView, Run, Stage};
 use crate::planes::PointsOfInterest;
 use crate::scene_loader::{
-    LoadOptions, Project, SHOWN, files_of_views, inspect_files, load_scene, open_project, unpack,
+    LoadOptions, Project, SHOWN, inspect_files, load_scene, open_project, unpack,
 };
 use crate::tiles::Area;
 
@@ -20,9 +19,8 @@ use crate::tiles::Area;
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Session {
+    /// Of large photographs the first bytes only, until their pixels are needed.
     pub(crate) files: Vec<InputFile>,
-    /// Photographs of which only the first bytes are here, until they are needed.
-    pub(crate) heads: Heads,
     /// The project that was added last.
     project: Option<Project>,
     pub(crate) params: Params,
@@ -151,7 +149,6 @@ impl Session {
             self.project = Some(project);
         }
         for added in files {
-            self.heads.forget(&added.path);
             self.put(added);
         }
         Ok(())
@@ -197,7 +194,6 @@ impl Session {
     #[wasm_bindgen(js_name = clearFiles)]
     pub fn clear_files(&mut self) {
         self.files.clear();
-        self.heads = Heads::default();
         self.packed.clear();
         self.merged = MergedShards::default();
         self.project = None;
@@ -215,10 +211,7 @@ impl Session {
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
     ) -> Result<JsValue, JsValue> {
         let options = load_options(&options)?;
-        let mut found = inspect_files(&self.files, &options);
-        let read = files_of_views(&self.files, &options);
-        found.peak_mb += self.heads.lacking_bytes(&self.files, &read) >> 20;
-        to_js(&found)
+        to_js(&inspect_files(&self.files, &options))
     }
 
     /// Makes a scene of the files: `{orientation?, views?, roi?, groundZ?}` in, `{views, origin,

@@ -109,24 +109,27 @@ impl Session {
         let heights: Option<[f64; 2]> = from_js(&heights, "heights")?;
         let flight = Flight::new(&self.files, &options, heights).map_err(|e| input_error(&e))?;
         let overview = flight.overview();
-        let lacking_mb = |views: &[ViewWindow]| {
+        // What whole photographs have beyond their first bytes: those of a tile are filled at once.
+        let filled_mb = |views: &[ViewWindow]| {
             let is_read = |name: &str| views.iter().any(|view| view.view == name);
             let read = (overview.footprints.iter()).filter(|one| is_read(&one.view));
-            let read: Vec<usize> = read
-                .filter_map(|one| self.files.iter().position(|file| file.path == one.path))
-                .collect();
-            self.heads.lacking_bytes(&self.files, &read) >> 20
+            let read = read.filter_map(|one| self.files.iter().find(|file| file.path == one.path));
+            let beyond = read.map(|file| file.length() - file.first_bytes().len() as u64);
+            beyond.sum::<u64>() >> 20
         };
         let tile = |tile: &Tile| {
             let mut planned = TilePlan::new(tile);
             for cell in &tile.cells {
                 match flight.windows(cell.region) {
-                    Ok((views, memory_mb)) => planned.add(views, memory_mb),
+                    Ok((views, memory_mb)) => {
+                        let unfilled = memory_mb.saturating_sub(filled_mb(&views));
+                        planned.add(views, unfilled);
+                    }
                     Err(error) => planned.left_out = planned.left_out.or(Some(error.to_string())),
                 }
             }
             planned.left_out = planned.left_out.filter(|_| planned.views.is_empty());
-            planned.memory_mb += lacking_mb(&planned.views);
+            planned.memory_mb += filled_mb(&planned.views);
             planned
         };
         let planned = (options.roi.or(overview.shown)).map(|area| plan_tiles(area, tile_m));
@@ -161,7 +164,7 @@ impl Session {
         area: Vec<f64>,
     ) -> Result<Vec<String>, JsValue> {
         let needed = ground_files(&self.files, &load_options(&options)?, four(&area)?);
-        Ok(self.heads.lacking(&self.files, &needed))
+        Ok(self.lacking(&needed))
     }
 
     /// Lowest and highest ground of an area as the photographs in its middle show it, metres; null
@@ -192,7 +195,8 @@ impl Session {
         self.outputs = None;
         self.points = None;
         let options = load_options(&options)?;
-        let area = Area::plan(&self.files, &options, &self.params, tile_m);
+        let mut files = &self.files[..];
+        let area = Area::plan(&mut files, &options, &self.params, tile_m);
         let area = self.area.insert(area.map_err(|e| input_error(&e))?);
         to_js(&area.tiles().iter().map(|t| t.core).collect::<Vec<_>>())
     }
@@ -256,7 +260,7 @@ impl Session {
         let needed = cells.iter().flat_map(|cell| needed(&self.files, cell));
         let needed: BTreeSet<usize> = needed.collect();
         let needed: Vec<usize> = needed.into_iter().collect();
-        Ok(self.heads.lacking(&self.files, &needed))
+        Ok(self.lacking(&needed))
     }
 
     fn planned(&self) -> Result<&Area, JsValue> {

@@ -167,7 +167,7 @@ impl<'a> Flight<'a> {
     }
 
     /// The views that a run on a region of interest reads, which part of each, and the memory that
-    /// it takes at its peak, megabytes, what the files hold beyond these bytes not included.
+    /// it takes at its peak, megabytes, with the whole files of these views.
     pub fn windows(&self, roi: [f64; 4]) -> Result<(Vec<ViewWindow>, u64)> {
         let mut views = self.plan.views.clone();
         let region = RegionOfInterest::new(roi, &self.plan.origin, self.heights)?;
