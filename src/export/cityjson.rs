@@ -15,10 +15,8 @@ use crate::ids::FacetId;
 use crate::model::{Building, BuildingWalls, RoofModel, Solid, Surface};
 use crate::roof_report::{Estimate, Lengths, RoofEdgeKind};
 use crate::scene::Scene;
+use crate::solids::WRITTEN_STEP_M;
 use crate::texture::{FaceTexture, TexturedModel};
-
-/// Step of the coordinates, metres.
-const SCALE_M: f64 = 1e-4;
 
 /// Name of the appearance theme.
 const THEME: &str = "photographs";
@@ -81,7 +79,7 @@ fn head(scene: &Scene, vertices: &[[i64; 3]]) -> Value {
         "type": "CityJSON",
         "version": "2.0",
         "transform": {
-            "scale": [SCALE_M, SCALE_M, SCALE_M],
+            "scale": [WRITTEN_STEP_M, WRITTEN_STEP_M, WRITTEN_STEP_M],
             "translate": scene.origin.as_slice(),
         },
         "CityObjects": {},
@@ -121,7 +119,7 @@ struct Shared {
 impl Shared {
     /// Appends the corners of a solid.
     fn add(&mut self, solid: &Solid) {
-        let whole = |c: f64| (c / SCALE_M).round() as i64;
+        let whole = |c: f64| (c / WRITTEN_STEP_M).round() as i64;
         let corners = solid.vertices.iter();
         let whole = corners.map(|p| [whole(p.x), whole(p.y), whole(p.z)]);
         self.vertices.extend(whole);
@@ -291,7 +289,7 @@ fn texture_of_rings(texture: &FaceTexture, shared: &mut Shared) -> Vec<Vec<usize
 
 /// Lowest and highest coordinates in the world frame.
 fn extent(scene: &Scene, vertices: &[[i64; 3]]) -> Vec<f64> {
-    let world = |axis: usize, v: i64| rounded(v as f64 * SCALE_M + scene.origin[axis], 4);
+    let world = |axis: usize, v: i64| rounded(v as f64 * WRITTEN_STEP_M + scene.origin[axis], 4);
     let of = |axis: usize| vertices.iter().map(move |v| v[axis]);
     let low = (0..3).map(|axis| world(axis, of(axis).min().unwrap_or(0)));
     let high = (0..3).map(|axis| world(axis, of(axis).max().unwrap_or(0)));
