@@ -6,6 +6,8 @@
 //! origin (coarser steps would bend planar roofs). The texture is the file [`ATLAS_FILE`] beside
 //! this one. The reference system is written where the input names one.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value, json};
 
 use super::format::{ATLAS_FILE, rounded, to_bytes};
@@ -32,9 +34,10 @@ pub(super) fn city_json(
     let mut objects = Map::new();
     for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
         let of = (model, measured);
+        let first = shared.vertices.len();
         let mut object = building_object(scene, of, (i, building), textures, &mut shared);
         if let Some(walls) = walls.get(i) {
-            add_walls(&mut object, walls, &mut shared);
+            add_walls(&mut object, walls, &mut shared, first);
         }
         objects.insert(format!("building-{i}"), object);
     }
@@ -119,10 +122,21 @@ struct Shared {
 impl Shared {
     /// Appends the corners of a solid.
     fn add(&mut self, solid: &Solid) {
-        let whole = |c: f64| (c / WRITTEN_STEP_M).round() as i64;
-        let corners = solid.vertices.iter();
-        let whole = corners.map(|p| [whole(p.x), whole(p.y), whole(p.z)]);
-        self.vertices.extend(whole);
+        self.vertices.extend(whole_corners(solid));
+    }
+
+    /// Appends the corners of one more solid of the building whose corners begin at `first`, but
+    /// for those that are there; gives the index of each.
+    fn add_more(&mut self, solid: &Solid, first: usize) -> Vec<usize> {
+        let own = self.vertices.iter().enumerate().skip(first);
+        let known: BTreeMap<[i64; 3], usize> = own.rev().map(|(i, v)| (*v, i)).collect();
+        let index = |corner: [i64; 3]| {
+            known.get(&corner).copied().unwrap_or_else(|| {
+                self.vertices.push(corner);
+                self.vertices.len() - 1
+            })
+        };
+        whole_corners(solid).map(index).collect()
     }
 
     fn appearance(&self) -> Value {
@@ -132,6 +146,12 @@ impl Shared {
             "vertices-texture": self.uv,
         })
     }
+}
+
+/// The corners in whole steps.
+fn whole_corners(solid: &Solid) -> impl Iterator<Item = [i64; 3]> {
+    let whole = |c: f64| (c / WRITTEN_STEP_M).round() as i64;
+    (solid.vertices.iter()).map(move |p| [whole(p.x), whole(p.y), whole(p.z)])
 }
 
 fn building_object(
@@ -183,12 +203,12 @@ fn building_object(
 }
 
 /// Adds what is known of the walls, and the solid that has them where they stand.
-fn add_walls(object: &mut Value, walls: &BuildingWalls, shared: &mut Shared) {
+/// The building's own corners begin at `first`.
+fn add_walls(object: &mut Value, walls: &BuildingWalls, shared: &mut Shared, first: usize) {
     add_attributes(&mut object["attributes"], walls);
-    let geometry = walled_solid(walls, shared.vertices.len());
     if let (Some(solid), Some(all)) = (&walls.solid, object["geometry"].as_array_mut()) {
-        all.extend(geometry);
-        shared.add(solid);
+        let corners = shared.add_more(solid, first);
+        all.push(walled_solid(walls, solid, &corners));
     }
 }
 

@@ -26,7 +26,7 @@ const AREA_M2: f64 = 1e-6;
 type Exact = Vector3<i128>;
 
 /// Are the faces of a closed solid planar, with triangles that look the way they do, and do they
-/// touch in common corners and edges only?
+/// touch in common corners and edges only, all as one piece?
 pub(super) fn is_sound_as_written(solid: &Solid) -> bool {
     let whole = |p: &Point3<f64>| p.coords.map(|c| (c / WRITTEN_STEP_M).round());
     let rounded = Solid {
@@ -41,9 +41,9 @@ pub(super) fn is_sound_as_written(solid: &Solid) -> bool {
     let triangles: Option<Vec<_>> = (0..solid.faces.len())
         .map(|face| sound_triangles(&rounded, face))
         .collect();
-    let corners_apart = corners_are_apart(&rounded);
+    let corners_sound = corners_are_apart(&rounded) && is_one_piece(solid);
     triangles
-        .is_some_and(|of_faces| corners_apart && !faces_meet(&exact, &rounded.vertices, &of_faces))
+        .is_some_and(|of_faces| corners_sound && !faces_meet(&exact, &rounded.vertices, &of_faces))
 }
 
 fn corners_are_apart(solid: &Solid) -> bool {
@@ -53,6 +53,25 @@ fn corners_are_apart(solid: &Solid) -> bool {
         let near = corners[i + 1..].iter().take_while(|q| q.x - p.x < SNAP_M);
         near.into_iter().all(|q| (*q - *p).norm() >= SNAP_M)
     })
+}
+
+/// Are all faces connected through common corners?
+fn is_one_piece(solid: &Solid) -> bool {
+    let mut faces_at = vec![Vec::new(); solid.vertices.len()];
+    for (i, face) in solid.faces.iter().enumerate() {
+        for v in face.rings.iter().flatten() {
+            faces_at[*v as usize].push(i);
+        }
+    }
+    let mut reached = vec![false; solid.faces.len()];
+    let mut open: Vec<usize> = faces_at.iter().flatten().copied().take(1).collect();
+    while let Some(i) = open.pop() {
+        if !std::mem::replace(&mut reached[i], true) {
+            let corners = solid.faces[i].rings.iter().flatten();
+            open.extend(corners.flat_map(|v| &faces_at[*v as usize]));
+        }
+    }
+    reached.iter().all(|r| *r)
 }
 
 /// The triangles of a face, as corners of the solid; `None` where it is not planar.
@@ -215,6 +234,19 @@ mod tests {
             &corner,
             &[&[4, 8, 9, 10, 5, 6, 7]]
         )));
+    }
+
+    #[test]
+    fn two_cubes_are_no_solid() {
+        let mut two = cube(&[], &[&[4, 5, 6, 7]]);
+        let far = two.vertices.iter().map(|p| p + Vector3::x() * 30.0);
+        two.vertices = two.vertices.iter().copied().chain(far).collect();
+        let mut more = two.faces.clone();
+        for v in more.iter_mut().flat_map(|f| &mut f.rings).flatten() {
+            *v += 8;
+        }
+        two.faces.extend(more);
+        assert!(!is_sound_as_written(&two));
     }
 
     #[test]
