@@ -6,6 +6,8 @@
 //! origin (coarser steps would bend planar roofs). The texture is the file [`ATLAS_FILE`] beside
 //! this one. The reference system is written where the input names one.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value, json};
 
 use super::format::{ATLAS_FILE, rounded, to_bytes};
@@ -15,10 +17,8 @@ use crate::ids::FacetId;
 use crate::model::{Building, BuildingWalls, RoofModel, Solid, Surface};
 use crate::roof_report::{Estimate, Lengths, RoofEdgeKind};
 use crate::scene::Scene;
+use crate::solids::WRITTEN_STEP_M;
 use crate::texture::{FaceTexture, TexturedModel};
-
-/// Step of the coordinates, metres.
-const SCALE_M: f64 = 1e-4;
 
 /// Name of the appearance theme.
 const THEME: &str = "photographs";
@@ -34,9 +34,10 @@ pub(super) fn city_json(
     let mut objects = Map::new();
     for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
         let of = (model, measured);
+        let first = shared.vertices.len();
         let mut object = building_object(scene, of, (i, building), textures, &mut shared);
         if let Some(walls) = walls.get(i) {
-            add_walls(&mut object, walls, &mut shared);
+            add_walls(&mut object, walls, &mut shared, first);
         }
         objects.insert(format!("building-{i}"), object);
     }
@@ -81,7 +82,7 @@ fn head(scene: &Scene, vertices: &[[i64; 3]]) -> Value {
         "type": "CityJSON",
         "version": "2.0",
         "transform": {
-            "scale": [SCALE_M, SCALE_M, SCALE_M],
+            "scale": [WRITTEN_STEP_M, WRITTEN_STEP_M, WRITTEN_STEP_M],
             "translate": scene.origin.as_slice(),
         },
         "CityObjects": {},
@@ -121,10 +122,21 @@ struct Shared {
 impl Shared {
     /// Appends the corners of a solid.
     fn add(&mut self, solid: &Solid) {
-        let whole = |c: f64| (c / SCALE_M).round() as i64;
-        let corners = solid.vertices.iter();
-        let whole = corners.map(|p| [whole(p.x), whole(p.y), whole(p.z)]);
-        self.vertices.extend(whole);
+        self.vertices.extend(whole_corners(solid));
+    }
+
+    /// Appends the corners of one more solid of the building whose corners begin at `first`, but
+    /// for those that are there; gives the index of each.
+    fn add_more(&mut self, solid: &Solid, first: usize) -> Vec<usize> {
+        let own = self.vertices.iter().enumerate().skip(first);
+        let known: BTreeMap<[i64; 3], usize> = own.rev().map(|(i, v)| (*v, i)).collect();
+        let index = |corner: [i64; 3]| {
+            known.get(&corner).copied().unwrap_or_else(|| {
+                self.vertices.push(corner);
+                self.vertices.len() - 1
+            })
+        };
+        whole_corners(solid).map(index).collect()
     }
 
     fn appearance(&self) -> Value {
@@ -134,6 +146,12 @@ impl Shared {
             "vertices-texture": self.uv,
         })
     }
+}
+
+/// The corners in whole steps.
+fn whole_corners(solid: &Solid) -> impl Iterator<Item = [i64; 3]> {
+    let whole = |c: f64| (c / WRITTEN_STEP_M).round() as i64;
+    (solid.vertices.iter()).map(move |p| [whole(p.x), whole(p.y), whole(p.z)])
 }
 
 fn building_object(
@@ -185,12 +203,12 @@ fn building_object(
 }
 
 /// Adds what is known of the walls, and the solid that has them where they stand.
-fn add_walls(object: &mut Value, walls: &BuildingWalls, shared: &mut Shared) {
+/// The building's own corners begin at `first`.
+fn add_walls(object: &mut Value, walls: &BuildingWalls, shared: &mut Shared, first: usize) {
     add_attributes(&mut object["attributes"], walls);
-    let geometry = walled_solid(walls, shared.vertices.len());
     if let (Some(solid), Some(all)) = (&walls.solid, object["geometry"].as_array_mut()) {
-        all.extend(geometry);
-        shared.add(solid);
+        let corners = shared.add_more(solid, first);
+        all.push(walled_solid(walls, solid, &corners));
     }
 }
 
@@ -291,7 +309,7 @@ fn texture_of_rings(texture: &FaceTexture, shared: &mut Shared) -> Vec<Vec<usize
 
 /// Lowest and highest coordinates in the world frame.
 fn extent(scene: &Scene, vertices: &[[i64; 3]]) -> Vec<f64> {
-    let world = |axis: usize, v: i64| rounded(v as f64 * SCALE_M + scene.origin[axis], 4);
+    let world = |axis: usize, v: i64| rounded(v as f64 * WRITTEN_STEP_M + scene.origin[axis], 4);
     let of = |axis: usize| vertices.iter().map(move |v| v[axis]);
     let low = (0..3).map(|axis| world(axis, of(axis).min().unwrap_or(0)));
     let high = (0..3).map(|axis| world(axis, of(axis).max().unwrap_or(0)));

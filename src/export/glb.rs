@@ -21,8 +21,7 @@ use gltf_json::validation::{Checked, USize64};
 use gltf_json::{self as gltf, Index};
 use serde_json::{Value, json};
 
-use super::triangulate::triangulate;
-use crate::model::{Building, RoofModel, SolidFace, Surface};
+use crate::model::{Building, RoofModel, SolidFace, Surface, triangulate};
 use crate::scene::Scene;
 use crate::texture::{FaceTexture, TexturedModel};
 

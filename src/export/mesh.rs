@@ -6,10 +6,9 @@
 use nalgebra::Point3;
 
 use super::format::{ATLAS_FILE, MATERIAL_FILE, push_line, world};
-use super::triangulate::triangulate;
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
-use crate::model::{RoofModel, Surface};
+use crate::model::{RoofModel, Surface, triangulate};
 use crate::scene::Scene;
 use crate::texture::TexturedModel;
 

@@ -18,7 +18,7 @@
 //! | `lines.json`, `segments.json`, `halfplanes.json` | what the model was made from |
 //! | `evidence.json` | what spoke for every candidate, and against it |
 //!
-//! `format` and `measured` hold what the writers share, `triangulate` the triangles of a face,
+//! `format` and `measured` hold what the writers share,
 //! `walls` the LoD 2.3 solids of CityJSON.
 //!
 //! Invariant: the same input gives the same bytes; nothing writes a date, a path or a random id.
@@ -34,7 +34,6 @@ mod mesh;
 mod plans;
 mod report;
 mod tileset;
-mod triangulate;
 mod walls;
 
 pub use cityjson::city_json_seq;
@@ -45,7 +44,6 @@ pub use json::{half_planes_json, lines_json, segments_json};
 pub use mesh::{mtl, obj, ply};
 pub use plans::{dxf, lines_csv};
 pub use report::report_files;
-pub use triangulate::triangulate;
 
 use image::codecs::jpeg::JpegEncoder;
 

@@ -5,9 +5,8 @@
 use nalgebra::Point3;
 
 use super::format::{push_line, rounded, world};
-use super::triangulate::triangulate;
 use crate::lines3d::Line3d;
-use crate::model::{RoofModel, Surface};
+use crate::model::{RoofModel, Surface, triangulate};
 use crate::scene::Scene;
 
 /// DXF of AutoCAD R12, which every program reads: 3DFACE on the layers ROOF, WALL and GROUND, LINE

@@ -10,23 +10,21 @@ use crate::model::{BuildingWalls, Solid, SolidFace, Surface, Wall};
 /// metres.
 const NEAR_M: f64 = 0.02;
 
-/// The geometry, its corners counted from `offset`; `None` where the building has no solid of its
-/// own with walls.
-pub(super) fn walled_solid(walls: &BuildingWalls, offset: usize) -> Option<Value> {
-    let solid = walls.solid.as_ref()?;
-    let ring = |ring: &Vec<u32>| ring.iter().map(|v| offset + *v as usize).collect();
+/// The geometry of a solid with walls, with the index in the file of each of its corners.
+pub(super) fn walled_solid(walls: &BuildingWalls, solid: &Solid, corners: &[usize]) -> Value {
+    let ring = |ring: &Vec<u32>| ring.iter().map(|v| corners[*v as usize]).collect();
     let boundary = |face: &SolidFace| face.rings.iter().map(ring).collect::<Vec<Vec<usize>>>();
     let boundaries: Vec<_> = solid.faces.iter().map(boundary).collect();
     let surfaces: Vec<Value> = (solid.faces.iter())
         .map(|face| surface(walls, solid, face))
         .collect();
     let values: Vec<usize> = (0..surfaces.len()).collect();
-    Some(json!({
+    json!({
         "type": "Solid",
         "lod": "2.3",
         "boundaries": [boundaries],
         "semantics": { "surfaces": surfaces, "values": [values] },
-    }))
+    })
 }
 
 /// What is known of the walls, as attributes of the building.

@@ -3,6 +3,7 @@
 //! ```text
 //! roof_model  facets, buildings and their closed solids
 //! invariants  what every model must fulfil
+//! triangulate triangles of a planar face
 //! uncertainty standard deviations of facets and corners
 //! walls       where walls stand below the roof
 //! visibility  occlusion of points by roofs
@@ -12,6 +13,7 @@
 
 mod invariants;
 mod roof_model;
+mod triangulate;
 mod uncertainty;
 mod visibility;
 mod walls;
@@ -19,6 +21,7 @@ mod walls;
 pub(crate) use invariants::is_simple;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use roof_model::{Building, Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
+pub use triangulate::triangulate;
 pub use uncertainty::{CornerUncertainty, FacetUncertainty};
 pub use visibility::Occluders;
 pub(crate) use visibility::inside;

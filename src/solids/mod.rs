@@ -7,8 +7,10 @@
 //! rings      closed rings from the directed edges of a region
 //! walls      partition -> faces of a building: roofs, walls, ground
 //! sides      straight stretches of the outline, a wall below each
-//! overhang   the same building with its walls inside the eaves
+//! footprint  where a building stands whose walls are inside the eaves
+//! overhang   the same building with its walls there
 //! manifold   faces -> closed oriented 2-manifold
+//! soundness  whether a solid is one for other programs too
 //! rejection  why a facet is not part of a solid
 //! ```
 //!
@@ -19,18 +21,21 @@
 //! Invariant: facets that touch in a corner only are separate buildings.
 //! Invariant: no facet is dropped without a [`SolidRejection`].
 
+mod footprint;
 mod manifold;
 mod overhang;
 mod partition;
 mod rejection;
 mod rings;
 mod sides;
+mod soundness;
 mod touching;
 mod walls;
 
 pub use overhang::{RIM_M, close_below_overhangs};
 pub use rejection::SolidRejection;
 pub use sides::{Side, outline_sides};
+pub use soundness::WRITTEN_STEP_M;
 
 use serde::Serialize;
 

@@ -23,10 +23,12 @@ use std::collections::BTreeMap;
 use i_overlay::core::overlay_rule::OverlayRule;
 use nalgebra::{Point2, Point3};
 
+use super::footprint::{Rings, footprint};
 use super::manifold::close_shell;
 use super::partition::{PlanPartition, overlay};
 use super::rings::{PlanRegion, regions_from_edges, ring_edges};
-use super::sides::{Side, key, left_of, mitre};
+use super::sides::Side;
+use super::soundness::is_sound_as_written;
 use super::walls::{FaceKind, Shell, ShellFace};
 use crate::geometry::Plane;
 use crate::ids::FacetId;
@@ -35,14 +37,8 @@ use crate::model::{Facet, Solid, SolidFace, Surface, WELD_M};
 /// Height of the rim of an overhanging roof, metres. Assumption: rafters, boards and gutter.
 pub const RIM_M: f64 = 0.15;
 
-/// Least plan area of a footprint, as a share of the roof's: less is no house.
-const LEAST_FOOTPRINT: f64 = 0.3;
-
-/// Rings in plan.
-type Rings = Vec<Vec<Point2<f64>>>;
-
 /// The solid of a building with its facets `members`, whose walls stand `depths` inside its
-/// `sides`, on the ground; `None` where there is none that is closed.
+/// `sides`, on the ground; `None` where there is none that is sound.
 pub fn close_below_overhangs(
     members: &[(FacetId, &Facet)],
     sides: &[Side],
@@ -80,10 +76,11 @@ pub fn close_below_overhangs(
         surface: surface(face.kind),
         rings: face.rings,
     };
-    Some(Solid {
+    let solid = Solid {
         faces: shell.faces.into_iter().map(face).collect(),
         vertices: shell.corners,
-    })
+    };
+    is_sound_as_written(&solid).then_some(solid)
 }
 
 fn plan_of(facet: &Facet) -> Rings {
@@ -109,67 +106,6 @@ fn part_of(facet: &Facet, shape: &[Vec<Point2<f64>>]) -> Option<Facet> {
         .sum();
     // Of a sliver of width w and length l the area is w l and the outline 2 l.
     (part.plan_area().abs() > WELD_M * around).then_some(part)
-}
-
-/// The plan of the roof without the bands along its sides.
-fn footprint(roofs: &[Rings], sides: &[Side], depths: &[f64]) -> Option<Rings> {
-    let all = |rings: &[Vec<Point2<f64>>]| rings.to_vec();
-    let mut plan: Rings = all(roofs.first()?);
-    for roof in &roofs[1..] {
-        plan = overlay(&plan, roof, OverlayRule::Union).concat();
-    }
-    let whole = area_of(&plan);
-    let starts: BTreeMap<_, usize> = (sides.iter().enumerate())
-        .map(|(i, side)| (key(&side.start()), i))
-        .collect();
-    let ends: BTreeMap<_, usize> = (sides.iter().enumerate())
-        .map(|(i, side)| (key(&side.end()), i))
-        .collect();
-    for (i, side) in sides.iter().enumerate().filter(|(i, _)| depths[*i] > 0.0) {
-        let before = *ends.get(&key(&side.start()))?;
-        let after = *starts.get(&key(&side.end()))?;
-        let band = band(
-            side,
-            depths[i],
-            [
-                (&sides[before], depths[before]),
-                (&sides[after], depths[after]),
-            ],
-        );
-        plan = overlay(&plan, &[band], OverlayRule::Difference).concat();
-    }
-    (area_of(&plan) > LEAST_FOOTPRINT * whole).then_some(plan)
-}
-
-/// What lies between a side and its wall: a rectangle, or as far as the next wall where the outline
-/// turns in.
-fn band(side: &Side, depth: f64, [before, after]: [(&Side, f64); 2]) -> Vec<Point2<f64>> {
-    let inner = left_of(&side.along()) * depth;
-    let (start, end) = (side.start().xy(), side.end().xy());
-    let turns_in = |first: &Side, then: &Side| first.along().perp(&then.along()) < 0.0;
-    let at = |corner: Point2<f64>, [first, then]: [(&Side, f64); 2]| {
-        let directions = [first.0.along(), then.0.along()];
-        let mitred = mitre(&corner, [&directions[0], &directions[1]], [first.1, then.1]);
-        let mitred = mitred.filter(|_| turns_in(first.0, then.0));
-        mitred.unwrap_or(corner + inner)
-    };
-    let far = at(end, [(side, depth), after]);
-    let near = at(start, [before, (side, depth)]);
-    let rim = side.rim.iter().map(Point3::xy);
-    rim.chain([far, near]).collect()
-}
-
-/// Area of rings, square metres: holes run the other way.
-fn area_of(rings: &Rings) -> f64 {
-    let twice = |ring: &Vec<Point2<f64>>| {
-        let next = ring.iter().cycle().skip(1);
-        let origin = ring[0];
-        let terms = ring.iter().zip(next);
-        terms
-            .map(|(p, q)| (p - origin).perp(&(q - origin)))
-            .sum::<f64>()
-    };
-    (rings.iter().map(twice).sum::<f64>() / 2.0).abs()
 }
 
 /// A part of a facet.

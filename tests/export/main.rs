@@ -13,6 +13,7 @@ mod solid_checks;
 mod tables;
 mod texture;
 mod tileset;
+mod walls;
 
 use ridgeline::model::RoofModel;
 

@@ -14,7 +14,7 @@ use ridgeline::lines2d::ImageSegment;
 use ridgeline::lines3d::Line3d;
 use ridgeline::lines3d::Side;
 use ridgeline::lines3d::{LineSupport, SupportKind};
-use ridgeline::model::{Facet, RoofModel, check_invariants};
+use ridgeline::model::{BuildingWalls, Facet, RoofModel, check_invariants};
 use ridgeline::params::TextureParams;
 use ridgeline::planes::HalfPlane;
 use ridgeline::raster::Gray;
@@ -155,9 +155,22 @@ pub fn files_of(scene: &Scene, model: &RoofModel) -> BTreeMap<String, Vec<u8>> {
     files_with(scene, model, planted_evidence())
 }
 
-pub fn files_with(
+pub fn files_with(scene: &Scene, model: &RoofModel, sources: Sources) -> BTreeMap<String, Vec<u8>> {
+    files_from(scene, (model, &[]), sources)
+}
+
+/// With walls of each building.
+pub fn files_of_walled(
     scene: &Scene,
     model: &RoofModel,
+    walls: &[BuildingWalls],
+) -> BTreeMap<String, Vec<u8>> {
+    files_from(scene, (model, walls), planted_evidence())
+}
+
+fn files_from(
+    scene: &Scene,
+    (model, walls): (&RoofModel, &[BuildingWalls]),
     (segments, lines, half_planes): Sources,
 ) -> BTreeMap<String, Vec<u8>> {
     let params = TextureParams::default();
@@ -169,7 +182,7 @@ pub fn files_with(
         half_planes: &half_planes,
         candidates: &planted_candidates(),
         model,
-        walls: &[],
+        walls,
         textured: &textured,
     };
     export_all(&results, &params).into_iter().collect()

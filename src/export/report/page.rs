@@ -100,9 +100,14 @@ fn summary(html: &mut Html, reported: &ReportedModel) {
         "Lowest eave, m",
         "Highest point, m",
         "Volume, m³",
+        "Walls seen",
+        "Within walls, m³",
         "Probability",
     ]);
-    for (report, name) in buildings.iter().zip(&reported.names) {
+    let named = reported.names.iter().zip(&reported.walls);
+    for (report, (name, walls)) in buildings.iter().zip(named) {
+        let seen = walls.count.map(|[all, seen]| format!("{seen} of {all}"));
+        let within = walls.volume_m3.map(|volume| format!("{volume:.0}"));
         html.row(&[
             name,
             &report.facets.len().to_string(),
@@ -111,6 +116,8 @@ fn summary(html: &mut Html, reported: &ReportedModel) {
             &with_sigma(report.lowest_m, 2),
             &with_sigma(report.highest_m, 2),
             &with_sigma(report.volume_m3, 0),
+            &seen.unwrap_or_default(),
+            &within.unwrap_or_default(),
             &percent(report.probability),
         ]);
     }

@@ -104,6 +104,69 @@ fn a_lower_wing_and_its_inner_corner() {
     );
 }
 
+/// The corner of two walls is a hair beside the hip between their roofs: no edge of a millimetre,
+/// at whose ends the two roofs have different heights, bends them.
+#[test]
+fn a_corner_beside_a_hip_is_put_onto_it() {
+    let at = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
+    // Slopes of 1 and 1, eaves at 4 m around 12 m by 8 m.
+    let hip = [
+        facet(&[
+            at(0.0, 0.0, 4.0),
+            at(12.0, 0.0, 4.0),
+            at(8.0, 4.0, 8.0),
+            at(4.0, 4.0, 8.0),
+        ]),
+        facet(&[at(12.0, 0.0, 4.0), at(12.0, 8.0, 4.0), at(8.0, 4.0, 8.0)]),
+        facet(&[
+            at(12.0, 8.0, 4.0),
+            at(0.0, 8.0, 4.0),
+            at(4.0, 4.0, 8.0),
+            at(8.0, 4.0, 8.0),
+        ]),
+        facet(&[at(0.0, 8.0, 4.0), at(0.0, 0.0, 4.0), at(4.0, 4.0, 8.0)]),
+    ];
+    for hair in [0.0, 0.0009, 0.0013, 0.002, 0.005, 0.012, 0.05] {
+        let depth = |side: &Side| {
+            0.5 + if side.along().x.abs() > 0.5 {
+                hair
+            } else {
+                0.0
+            }
+        };
+        let model = walled(&hip, depth, &level(0.0)).unwrap();
+        assert_eq!(check_invariants(&model), []);
+        let solid = &model.buildings[0].solid;
+        let corners = || solid.vertices.iter().enumerate();
+        let shortest = corners()
+            .flat_map(|(i, p)| corners().take(i).map(move |(_, q)| (p - q).xy().norm()))
+            .filter(|d| *d > 0.0)
+            .fold(f64::INFINITY, f64::min);
+        assert!(shortest > 0.01, "{hair}: {shortest}");
+    }
+}
+
+/// Bands leave a strip of 4 cm that touches the rest in a point: no house stands on it.
+#[test]
+fn a_strip_beside_the_footprint_carries_no_roof() {
+    let at = |x: f64, y: f64| Point3::new(x, y, 5.0);
+    // A nib of 1.04 m, whose west side continues the step of the wall to its north.
+    let corners = [
+        [0.0, 0.0],
+        [10.0, 0.0],
+        [10.0, 8.0],
+        [6.54, 8.0],
+        [6.54, 11.0],
+        [5.5, 11.0],
+        [5.5, 8.0],
+        [0.0, 8.0],
+    ];
+    let roof = [facet(&corners.map(|[x, y]| at(x, y)))];
+    let model = walled(&roof, |_| 0.5, &level(0.0)).unwrap();
+    assert_eq!(check_invariants(&model), []);
+    assert_eq!(count(&model, Surface::Ground), 1);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
 

@@ -6,7 +6,7 @@
 use nalgebra::{Point2, Vector3};
 use spade::{ConstrainedDelaunayTriangulation, Point2 as SpadePoint, Triangulation};
 
-use crate::model::{Solid, SolidFace};
+use super::roof_model::{Solid, SolidFace};
 
 /// Triangles of a face, counter-clockwise seen from outside. Indices count the corners of all rings
 /// in order, so that texture coordinates per corner can be looked up.
