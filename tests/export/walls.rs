@@ -100,7 +100,7 @@ proptest! {
         depths in prop::collection::vec(0..6usize, 4),
         turned in 0.0..1.5f64,
     ) {
-        let (sin, cos) = turned.sin_cos();
+        let (sin, cos) = ridgeline::math::sin_cos(turned);
         let facets: Vec<Facet> = patches.iter().map(|&(x, y, w, h, z, gx, gy)| {
             let [x, y, w, h, z] = [x, y, w, h, z].map(f64::from);
             let (gx, gy) = (f64::from(gx) * 0.2, f64::from(gy) * 0.2);
