@@ -1,8 +1,8 @@
 //! The windows below a side of the outline: on its wall at every depth, and on the ground.
 //!
 //! Windows are as long as [`WINDOW_COLUMNS`] pixels along the side and [`WINDOW_ROWS`] rows high:
-//! of a wall that views see at a slant little shows, but that is long. The rows on a wall are a pixel
-//! apart in the view that sees it most from the side.
+//! of a wall that views see at a slant little shows, but that is long. The rows on a wall are a
+//! pixel apart in the view that sees it most from the side.
 
 use nalgebra::{Matrix3, Point3, Vector2, Vector3};
 
