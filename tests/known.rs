@@ -143,8 +143,8 @@ fn contains(ring: &[Point3<f64>], x: f64, y: f64) -> bool {
     })
 }
 
-/// By GDAL and LASzip: strips and tiles, all predictors, whole and floating-point numbers, both byte
-/// orders.
+/// By GDAL and LASzip: strips and tiles, all predictors, whole and floating-point numbers, both
+/// byte orders.
 #[test]
 fn files_of_other_programs_hold_the_planted_ground_and_house() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/known/");
