@@ -20,16 +20,16 @@ async function roofOf(page: Page): Promise<RoofFace[]> {
   const { scale, translate } = city.transform;
   const place = (v: number) =>
     city.vertices[v].map((x: number, i: number) => x * scale[i] + translate[i]) as Place;
-  type Building = { geometry?: { boundaries: number[][][][]; semantics: Semantics }[] };
+  type Building = { geometry?: { lod: string; boundaries: number[][][][]; semantics: Semantics }[] };
   type Semantics = { values: number[][]; surfaces: (RoofFace & { type: string })[] };
   const objects = Object.values(city.CityObjects) as Building[];
-  return objects.flatMap(({ geometry = [] }) =>
-    geometry.flatMap(({ boundaries: [shell = []], semantics: { values, surfaces } }) =>
-      shell.flatMap((face, i) => {
-        const surface = surfaces[values[0]?.[i] ?? -1];
-        return surface?.type === "RoofSurface" ? [{ ...surface, corners: (face[0] ?? []).map(place) }] : [];
-      }),
-    ),
+  // Where walls are seen below eaves the same roofs stand there a second time.
+  const simple = objects.flatMap(({ geometry = [] }) => geometry.filter(({ lod }) => lod === "2.2"));
+  return simple.flatMap(({ boundaries: [shell = []], semantics: { values, surfaces } }) =>
+    shell.flatMap((face, i) => {
+      const surface = surfaces[values[0]?.[i] ?? -1];
+      return surface?.type === "RoofSurface" ? [{ ...surface, corners: (face[0] ?? []).map(place) }] : [];
+    }),
   );
 }
 
