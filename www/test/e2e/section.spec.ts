@@ -12,6 +12,8 @@ async function openModel(page: Page): Promise<Locator> {
   await page.goto("/");
   await page.getByRole("button", { name: "Demo scene" }).click();
   await waitForStage(page, "model");
+  // The camera stands where the preliminary model put it.
+  await page.getByRole("button", { name: "Fit" }).click();
   return page.getByTestId("viewer");
 }
 
