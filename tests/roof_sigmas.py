@@ -6,7 +6,9 @@
 RESULTS has a folder with model.city.json for every scene, named as the scene's. A facet is compared
 with the true one of which it covers most, if its plane is that one's by the scorer's definitions: its
 height in its middle, and its slope along the steepest direction. A corner is compared with the
-nearest true corner of that facet, within NEAR_M: another one is another place. Printed are the shares
+nearest true corner of that facet, within NEAR_M: another one is another place. Areas and lengths are
+compared if either facet covers more than half of the other: the sloped area, and for every kind of
+edge that both have its length around the facet. Printed are the shares
 of errors within one and two standard deviations (68 and 95 % where they are right), and the median
 error and standard deviation. calibrate.py fits src/evidence/uncertainty.json by the same comparison.
 Needs numpy and shapely.
@@ -18,7 +20,9 @@ import sys
 
 # A corner farther away is not the same corner inexactly found, metres.
 NEAR_M = 0.5
-KINDS = ('height', 'slope', 'corner_plan', 'corner_height')
+KINDS = ('height', 'slope', 'corner_plan', 'corner_height', 'area', 'length')
+# Kinds of edges that the truth and the report name alike.
+EDGES = ('ridge', 'hip', 'valley', 'eave', 'rake')
 
 
 def main():
@@ -34,6 +38,9 @@ def main():
                 found[kind] += errors
     for kind, errors in found.items():
         print(f'{kind:14} {coverage(errors)}')
+    shares = sorted(abs(error) / true for error, _, true in found['area'])
+    if shares:
+        print(f'error of an area: median {100 * shares[len(shares) // 2]:.2f} %')
     return 0
 
 
@@ -47,7 +54,8 @@ def coverage(errors):
 
 
 def compare(score, scene, path):
-    """Per kind (error, stated standard deviation, what a ground pixel is in that unit)."""
+    """Per kind (error, stated standard deviation, what a ground pixel is in that unit); of areas and
+    lengths the last is the true value."""
     import numpy as np
 
     truth, origin = score.read_truth(str(scene))
@@ -57,6 +65,7 @@ def compare(score, scene, path):
     faces, _ = score.read_cityjson(str(path), centre, origin)
     found = {kind: [] for kind in KINDS}
     known = surfaces(path)
+    lengths = true_lengths(scene)
     for face in faces:
         surface, ring = known[face.id]
         true = same_facet(score, truth, face)
@@ -77,7 +86,26 @@ def compare(score, scene, path):
             if np.hypot(*nearest[:2]) <= NEAR_M:
                 found['corner_plan'] += [(nearest[0], sigma[0], pixel), (nearest[1], sigma[1], pixel)]
                 found['corner_height'].append((nearest[2], sigma[2], pixel))
+        if true.poly.intersection(face.poly).area > 0.5 * true.poly.area and 'areaSigma' in surface:
+            slant = math.hypot(1, *true.abc[:2])
+            area = true.poly.area * slant
+            found['area'].append((surface['area'] - area, surface['areaSigma'], area))
+            for kind, length in lengths.get(true.id, {}).items():
+                if f'{kind}Sigma' in surface['lengths']:
+                    found['length'].append((surface['lengths'][kind] - length, surface['lengths'][f'{kind}Sigma'], length))
     return found
+
+
+def true_lengths(scene):
+    """Per facet and kind of edge the length around it."""
+    lengths = {}
+    for edge in json.loads((scene / 'truth' / 'edges.json').read_text())['edges']:
+        # A break of a mansard is level like a ridge; reports call it a transition.
+        if edge['kind'] in EDGES and edge.get('sub') != 'break':
+            for face in edge['faces']:
+                of_face = lengths.setdefault(face, {})
+                of_face[edge['kind']] = of_face.get(edge['kind'], 0) + math.dist(edge['p0'], edge['p1'])
+    return lengths
 
 
 def same_facet(score, truth, face):
@@ -96,14 +124,16 @@ def surfaces(path):
     city = json.loads(path.read_text())
     scale, move = (np.array(city['transform'][k]) for k in ('scale', 'translate'))
     vertices = np.array(city['vertices']).reshape(-1, 3) * scale + move
-    known = {}
+    known, of_facet = {}, {}
     for name, thing in city['CityObjects'].items():
+        # The first solid says what is known of the roofs; score.py reads the one with most walls, which comes last.
         for geometry in thing.get('geometry', []):
             semantics = geometry['semantics']
             values = [value for shell in semantics['values'] for value in shell]
             faces = [rings for shell in geometry['boundaries'] for rings in shell]
             for k, (rings, value) in enumerate(zip(faces, values)):
-                known[f'{name}/{k}'] = semantics['surfaces'][value], vertices[rings[0]]
+                surface = semantics['surfaces'][value]
+                known[f'{name}/{k}'] = of_facet.setdefault(surface.get('facet', f'{name}/{k}'), (surface, vertices[rings[0]]))
     return known
 
 

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use serde::Deserialize;
 
 use crate::math::hypot;
+use crate::model::SideSupport;
 
 /// What the covariance of an adjustment leaves out: edges that are not where they seem, and the
 /// orientation, by which all of a scene is off alike.
@@ -22,6 +23,17 @@ pub(crate) struct UncertaintyTable {
     pub corner_plan: Inflation,
     /// Of the height of a corner.
     pub corner_height: Inflation,
+    /// Of the place of a side across it in plan, by what it rests on.
+    sides: SideInflations,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SideInflations {
+    edges: Inflation,
+    few_edges: Inflation,
+    planes: Inflation,
+    nothing: Inflation,
 }
 
 /// `sigma'^2 = (scale sigma)^2 + (floor_px u)^2`, u a ground pixel in the unit of sigma.
@@ -41,6 +53,16 @@ impl UncertaintyTable {
             fitted.expect("the table is part of the program")
         })
     }
+
+    /// Of a side.
+    pub(crate) fn side(&self, support: SideSupport) -> &Inflation {
+        match support {
+            SideSupport::Edges => &self.sides.edges,
+            SideSupport::FewEdges => &self.sides.few_edges,
+            SideSupport::Planes => &self.sides.planes,
+            SideSupport::Nothing => &self.sides.nothing,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -57,6 +79,12 @@ impl UncertaintyTable {
             slope: none,
             corner_plan: none,
             corner_height: none,
+            sides: SideInflations {
+                edges: none,
+                few_edges: none,
+                planes: none,
+                nothing: none,
+            },
         }
     }
 }

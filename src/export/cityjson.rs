@@ -8,13 +8,16 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Point3;
 use serde_json::{Map, Value, json};
 
 use super::format::{ATLAS_FILE, rounded, to_bytes};
 use super::measured::Measured;
 use super::walls::{add_attributes, walled_solid};
 use crate::ids::FacetId;
-use crate::model::{Building, BuildingWalls, RoofModel, Solid, Surface};
+use crate::model::{
+    Building, BuildingWalls, Facet, FacetUncertainty, RoofModel, SideUncertainty, Solid, Surface,
+};
 use crate::roof_report::{Estimate, Lengths, RoofEdgeKind};
 use crate::scene::Scene;
 use crate::solids::WRITTEN_STEP_M;
@@ -283,11 +286,33 @@ fn semantic_surface(model: &RoofModel, measured: &Measured, surface: Surface) ->
                 surface["slopeSigmaDeg"] = json!(rounded(known.slope_deg, 4));
                 surface["heightSigma"] = json!(rounded(known.height_m, 4));
                 surface["cornerSigma"] = corners.collect();
+                add_sides(&mut surface, facet, known);
             }
             add_measures(&mut surface, measured, id);
             surface
         }
     }
+}
+
+/// Adds what is known of the sides, a list for each ring; a side begins at the corner of its index.
+fn add_sides(surface: &mut Value, facet: &Facet, known: &FacetUncertainty) {
+    let of_rings = |value: &dyn Fn(&SideUncertainty) -> Value| -> Value {
+        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
+        let of_ring = |ring: &Vec<Point3<f64>>| -> Value {
+            let next = ring.iter().cycle().skip(1);
+            let middles = ring
+                .iter()
+                .zip(next)
+                .map(|(p, q)| nalgebra::center(&p.xy(), &q.xy()));
+            middles
+                .filter_map(|middle| known.side(&middle))
+                .map(value)
+                .collect()
+        };
+        rings.map(of_ring).collect()
+    };
+    surface["sideSigma"] = of_rings(&|side| json!(rounded(side.sigma_m, 4)));
+    surface["sideSupport"] = of_rings(&|side| json!(side.support.name()));
 }
 
 /// Per ring `[texture, uv, uv, ...]`; CityJSON's texture coordinates have their origin at the lower

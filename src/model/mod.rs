@@ -4,7 +4,7 @@
 //! roof_model  facets, buildings and their closed solids
 //! invariants  what every model must fulfil
 //! triangulate triangles of a planar face
-//! uncertainty standard deviations of facets and corners
+//! uncertainty standard deviations of facets, corners and sides
 //! walls       where walls stand below the roof
 //! visibility  occlusion of points by roofs
 //! ```
@@ -22,7 +22,7 @@ pub(crate) use invariants::is_simple;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use roof_model::{Building, Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
 pub use triangulate::triangulate;
-pub use uncertainty::{CornerUncertainty, FacetUncertainty};
+pub use uncertainty::{CornerUncertainty, FacetUncertainty, SideSupport, SideUncertainty};
 pub use visibility::Occluders;
 pub(crate) use visibility::inside;
 pub use walls::{BuildingWalls, Wall};

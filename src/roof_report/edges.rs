@@ -31,7 +31,7 @@ const FLAT: f64 = 0.0175;
 const STEP_M: f64 = 0.1;
 
 /// Pieces of an edge turn by less than this sine (1 degree).
-const STRAIGHT_SINE: f64 = 0.0175;
+pub(super) const STRAIGHT_SINE: f64 = 0.0175;
 
 /// Shorter pieces between longer ones have no direction of their own, metres: what is left where
 /// outlines were welded.

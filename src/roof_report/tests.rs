@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::geometry::Plane;
-use crate::model::{CornerUncertainty, FacetUncertainty};
+use crate::model::{CornerUncertainty, FacetUncertainty, SideSupport, SideUncertainty};
 use crate::solids::close_buildings;
 use crate::synthetic::gable_scene;
 use crate::testing::uniform;
@@ -274,6 +274,7 @@ proptest! {
 const SLOPE_DEG: f64 = 0.6;
 const HEIGHT_M: f64 = 0.08;
 const PLAN_M: [f64; 2] = [0.05, 0.12];
+const SIDE_M: f64 = 0.07;
 
 fn with_uncertainty(mut facets: Vec<Facet>) -> Vec<Facet> {
     for facet in &mut facets {
@@ -285,9 +286,21 @@ fn with_uncertainty(mut facets: Vec<Facet>) -> Vec<Facet> {
             height_m: HEIGHT_M,
             slope_deg: SLOPE_DEG,
             corners: facet.outer.iter().map(corner).collect(),
+            sides: sides_of(&facet.outer),
         });
     }
     facets
+}
+
+/// The sides of a ring, each as uncertain.
+fn sides_of(ring: &[Point3<f64>]) -> Vec<SideUncertainty> {
+    let next = ring.iter().cycle().skip(1);
+    let side = |(p, q): (&Point3<f64>, &Point3<f64>)| SideUncertainty {
+        ends: [p.xy(), q.xy()],
+        sigma_m: SIDE_M,
+        support: SideSupport::Edges,
+    };
+    ring.iter().zip(next).map(side).collect()
 }
 
 /// A number of mean 0 and standard deviation 1 (sum of twelve uniform ones).
@@ -323,7 +336,7 @@ fn measured(facets: &[Facet]) -> [f64; 6] {
 }
 
 #[test]
-fn stated_deviations_are_the_spread_of_perturbed_planes_and_corners() {
+fn stated_deviations_are_the_spread_of_perturbed_planes_corners_and_sides() {
     let facets = with_uncertainty(gable());
     let (model, _) = close_buildings(&facets, |_| 0.0);
     let report = &roof_report(&model)[0];
@@ -354,20 +367,30 @@ fn stated_deviations_are_the_spread_of_perturbed_planes_and_corners() {
             .flat_map(|y| [at(y, 0.0), at(y, 10.0)])
             .map(|p| p + Vector2::from(PLAN_M.map(|s| s * normal(&mut random))))
             .collect();
-        let drawn: Vec<Facet> = (facets.iter())
-            .zip([[0, 1, 3, 2], [2, 3, 5, 4]])
-            .map(|(facet, ring)| {
-                let middle = crate::geometry::mean_point(&facet.outer);
+        let mut displaced = |by: f64| by + SIDE_M * normal(&mut random);
+        let [west, east] = [0.0, 10.0].map(&mut displaced);
+        let level = [0.0, 4.0, 8.0].map(&mut displaced);
+        let crossings = level.map(|y| [at(y, west), at(y, east)]).concat();
+        let gradients: Vec<Vector2<f64>> = (facets.iter())
+            .map(|facet| {
                 let gradient = edges::gradient(facet);
-                let stretch = 1.0 + gradient.norm_squared();
-                let tilt = SLOPE_DEG.to_radians() * stretch;
-                let g = gradient + Vector2::from([0, 1].map(|_| tilt * normal(&mut random)));
+                let tilt = SLOPE_DEG.to_radians() * (1.0 + gradient.norm_squared());
+                gradient + Vector2::from([0, 1].map(|_| tilt * normal(&mut random)))
+            })
+            .collect();
+        let drawn = |corners: &[Point2<f64>]| -> Vec<Facet> {
+            let of_facet = |((facet, ring), g): ((&Facet, [usize; 4]), &Vector2<f64>)| {
+                let middle = crate::geometry::mean_point(&facet.outer);
                 let height = |p: &Point2<f64>| middle.z + raised + g.dot(&(p - middle.xy()));
                 let ring = ring.map(|i| corners[i]);
                 crate::testing::facet(&ring.map(|p| Point3::new(p.x, p.y, height(&p))))
-            })
-            .collect();
-        found.push(measured(&drawn));
+            };
+            let rings = facets.iter().zip([[0, 1, 3, 2], [2, 3, 5, 4]]);
+            rings.zip(&gradients).map(of_facet).collect()
+        };
+        let [area, plan_area, .., volume] = measured(&drawn(&crossings));
+        let [.., azimuth, ridge, rake, _] = measured(&drawn(&corners));
+        found.push([area, plan_area, azimuth, ridge, rake, volume]);
     }
     for (i, stated) in stated.into_iter().enumerate() {
         let mean = found.iter().map(|m| m[i]).sum::<f64>() / DRAWS as f64;

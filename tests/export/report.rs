@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 use ridgeline::export::report_files;
-use ridgeline::model::{CornerUncertainty, FacetUncertainty, RoofModel};
+use ridgeline::model::{
+    CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
+};
 use serde_json::Value;
 
 use crate::planted::{ORIGIN, files_of, planted_models, scene};
@@ -24,9 +26,28 @@ fn known_models() -> Vec<(&'static str, RoofModel, f64)> {
             height_m: 0.06,
             slope_deg: 0.5,
             corners: facet.outer.iter().map(corner).collect(),
+            sides: sides_of(facet),
         });
     }
     models
+}
+
+/// The sides of a facet, each resting on something else.
+fn sides_of(facet: &Facet) -> Vec<SideUncertainty> {
+    let supports = [
+        SideSupport::Edges,
+        SideSupport::Planes,
+        SideSupport::Nothing,
+    ];
+    let rings = std::iter::once(&facet.outer).chain(&facet.holes);
+    let pieces = rings.flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
+    (pieces.zip(supports.into_iter().cycle()))
+        .map(|((p, q), support)| SideUncertainty {
+            ends: [p.xy(), q.xy()],
+            sigma_m: 0.02,
+            support,
+        })
+        .collect()
 }
 
 fn rows(table: &[u8]) -> Vec<BTreeMap<String, String>> {

@@ -14,9 +14,9 @@
 use super::adjust::{AdjustmentProblem, Term};
 use super::relations::propose;
 use super::statement::Statement;
-use super::uncertainty::uncertainty_of;
+use super::uncertainty::uncertainty_on;
 use super::wireframe::{Wireframe, WireframeState};
-use crate::model::Facet;
+use crate::model::{Facet, SideSupport};
 use crate::params::RefineParams;
 use crate::scene::Scene;
 
@@ -72,7 +72,10 @@ pub fn adjust_to_statements(
         }
     }
     let solution = problem.solve(&state, &pattern)?;
-    let uncertainties = uncertainty_of(&problem, &solution);
+    let supports: Vec<Vec<SideSupport>> = (facets.iter().enumerate())
+        .map(|(face, facet)| supports_before(&wireframe, &solution.state, face, facet))
+        .collect();
+    let uncertainties = uncertainty_on(&problem, &solution, &supports);
     let adjusted = wireframe.facets(&solution.state, facets);
     let known = adjusted.into_iter().zip(uncertainties);
     Some(
@@ -83,6 +86,22 @@ pub fn adjust_to_statements(
             })
             .collect(),
     )
+}
+
+/// What the sides of a facet rest on, as its uncertainty says.
+fn supports_before(
+    w: &Wireframe,
+    state: &WireframeState,
+    face: usize,
+    facet: &Facet,
+) -> Vec<SideSupport> {
+    let known = facet.uncertainty.as_ref();
+    let support = |ends: [usize; 2]| {
+        let [u, v] = ends.map(|v| w.position(state, v));
+        let side = known.and_then(|known| known.side(&nalgebra::center(&u, &v)));
+        side.map_or(SideSupport::Nothing, |side| side.support)
+    };
+    w.ring_sides(face).map(support).collect()
 }
 
 /// The building as it is: corners in plan, heights of the facets there, and the relations that

@@ -1,4 +1,4 @@
-//! Standard deviations of planes and corners from the covariance of the adjustment.
+//! Standard deviations of planes, corners and sides from the covariance of the adjustment.
 //!
 //! ```text
 //! C = s^2 (A' W A)^-1,    sigma^2 of any f(x) = g' C g,    g = df/dx
@@ -7,18 +7,31 @@
 //! with s^2 by how much the residuals scatter more than they should. What is stated is inflated to
 //! the errors that were measured on scenes with truth ([`UncertaintyTable`]).
 
+use std::collections::BTreeSet;
+
 use nalgebra::{DVector, Point2, Vector2, Vector3};
 
-use super::adjust::{AdjustmentProblem, Solution};
-use super::wireframe::Wireframe;
+use super::adjust::{AdjustmentProblem, Solution, Term};
+use super::wireframe::{Wireframe, WireframeState};
 use crate::evidence::UncertaintyTable;
 use crate::math::median;
-use crate::model::{CornerUncertainty, FacetUncertainty};
+use crate::model::{CornerUncertainty, FacetUncertainty, SideSupport, SideUncertainty};
 
-/// The uncertainty of every facet of a solved problem.
+/// The uncertainty of every facet of a solved problem; sides rest on the edges measured for it.
 pub(super) fn uncertainty_of(
     problem: &AdjustmentProblem,
     solution: &Solution,
+) -> Vec<FacetUncertainty> {
+    let supports = supports_of(problem, &solution.state);
+    uncertainty_on(problem, solution, &supports)
+}
+
+/// The uncertainty of every facet of a solved problem, of which is known what the sides rest on: a
+/// list for each facet.
+pub(super) fn uncertainty_on(
+    problem: &AdjustmentProblem,
+    solution: &Solution,
+    supports: &[Vec<SideSupport>],
 ) -> Vec<FacetUncertainty> {
     let (w, state) = (problem.wireframe, &solution.state);
     let place = w.corner(state, 0, w.faces[0][0][0]);
@@ -28,7 +41,30 @@ pub(super) fn uncertainty_of(
         .iter()
         .map(|v| v.camera.ground_pixel(&place));
     let pixel_m = median(&mut pixels.collect::<Vec<_>>()).unwrap_or(0.0);
-    of_facets(w, solution, pixel_m, UncertaintyTable::fitted())
+    of_facets(w, solution, pixel_m, UncertaintyTable::fitted(), supports)
+}
+
+/// What every side of every facet rests on, by the edges that were measured.
+fn supports_of(problem: &AdjustmentProblem, state: &WireframeState) -> Vec<Vec<SideSupport>> {
+    let w = problem.wireframe;
+    let mut views = vec![BTreeSet::new(); w.sides.len()];
+    for term in &problem.terms {
+        if let Term::Edge(edge) = term {
+            views[edge.side].insert(edge.view);
+        }
+    }
+    let support = |face: usize, ends: [usize; 2]| {
+        let covering = (0..w.sides.len()).filter(|&side| w.covers(state, &w.sides[side], ends));
+        match covering.map(|side| views[side].len()).max() {
+            Some(3..) => SideSupport::Edges,
+            Some(1 | 2) => SideSupport::FewEdges,
+            _ if w.is_crease(face, ends) => SideSupport::Planes,
+            _ => SideSupport::Nothing,
+        }
+    };
+    (0..w.faces.len())
+        .map(|face| w.ring_sides(face).map(|ends| support(face, ends)).collect())
+        .collect()
 }
 
 /// The uncertainty of every facet of an adjusted wireframe; `pixel_m` is a ground pixel.
@@ -37,6 +73,7 @@ fn of_facets(
     solution: &Solution,
     pixel_m: f64,
     table: &UncertaintyTable,
+    supports: &[Vec<SideSupport>],
 ) -> Vec<FacetUncertainty> {
     let covariance = Covariance {
         w,
@@ -46,7 +83,10 @@ fn of_facets(
     };
     let in_plan: Vec<Vector2<f64>> = (0..w.vertices).map(|v| covariance.in_plan(v)).collect();
     (0..w.faces.len())
-        .map(|face| covariance.of_facet(face, &in_plan))
+        .map(|face| FacetUncertainty {
+            sides: covariance.of_sides(face, &supports[face]),
+            ..covariance.of_facet(face, &in_plan)
+        })
         .collect()
 }
 
@@ -113,7 +153,28 @@ impl Covariance<'_> {
             height_m: table.height.of(self.sigma(&height(&middle)), self.pixel_m),
             slope_deg: table.slope.of(slope_rad, pixel_rad).to_degrees(),
             corners,
+            sides: Vec::new(),
         }
+    }
+
+    fn of_sides(&self, face: usize, supports: &[SideSupport]) -> Vec<SideUncertainty> {
+        let (w, state) = (self.w, &self.solution.state);
+        let sides = w.ring_sides(face).zip(supports);
+        let of_side = |(ends, &support): ([usize; 2], &SideSupport)| {
+            let places = ends.map(|v| w.position(state, v));
+            let along = places[1] - places[0];
+            let across = Vector2::new(-along.y, along.x).try_normalize(0.0);
+            // Of its middle: half of each end.
+            let half = across.unwrap_or_else(Vector2::x) / 2.0;
+            let [u, v] = ends.map(|v| [(2 * v, half.x), (2 * v + 1, half.y)]);
+            let sigma = self.sigma(&[u, v].concat());
+            SideUncertainty {
+                ends: places,
+                sigma_m: self.table.side(support).of(sigma, self.pixel_m),
+                support,
+            }
+        };
+        sides.map(of_side).collect()
     }
 }
 
@@ -126,7 +187,6 @@ fn plan_area(ring: &[CornerUncertainty]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::adjust::Term;
     use super::*;
     use crate::params::RefineParams;
     use crate::synthetic::gable_scene;
@@ -153,7 +213,8 @@ mod tests {
             .unsolved(&state, &pattern)
             .expect("a regular matrix");
         let table = UncertaintyTable::as_adjusted();
-        let known = of_facets(&w, &solution, 0.1, &table).remove(0);
+        let supports = supports_of(&problem, &state);
+        let known = of_facets(&w, &solution, 0.1, &table, &supports).remove(0);
         // The mean of four heights, and the slope of a line through two times two.
         assert!((known.height_m - SIGMA / 2.0).abs() < 1e-9);
         assert!((known.slope_deg - (SIGMA / SIDE).to_degrees()).abs() < 1e-9);
@@ -200,7 +261,8 @@ mod tests {
         let pattern = problem.pattern();
         let solution = problem.unsolved(&state, &pattern).expect("regular");
         let table = UncertaintyTable::as_adjusted();
-        let known = of_facets(&w, &solution, 0.1, &table);
+        let supports = supports_of(&problem, &state);
+        let known = of_facets(&w, &solution, 0.1, &table, &supports);
         for ridge_end in [Point3::new(4.0, 0.0, 7.0), Point3::new(4.0, 9.0, 7.0)] {
             let [a, b] = [0, 1].map(|i| known[i].at(&ridge_end).expect("corners").z);
             assert!((a - b).abs() < 1e-3 && a > 0.03, "{a} {b}");

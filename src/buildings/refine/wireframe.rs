@@ -167,6 +167,45 @@ impl Wireframe {
         Segment3::new(p0, p1)
     }
 
+    /// The ends of all sides of a facet, ring by ring, from corner to corner.
+    pub(super) fn ring_sides(&self, face: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
+        self.faces[face].iter().flat_map(|ring| {
+            let next = ring.iter().cycle().skip(1);
+            ring.iter().zip(next).map(|(&u, &v)| [u, v])
+        })
+    }
+
+    /// Does a piece of an outline lie on a side?
+    pub(super) fn covers(
+        &self,
+        state: &WireframeState,
+        side: &WireframeSide,
+        piece: [usize; 2],
+    ) -> bool {
+        let [from, to] = side.ends.map(|v| self.position(state, v));
+        let Some(along) = (to - from).try_normalize(0.0) else {
+            return false;
+        };
+        piece.into_iter().all(|v| {
+            let d = self.position(state, v) - from;
+            let at = d.dot(&along);
+            let is_between = at >= -STRAIGHT_M && at <= (to - from).norm() + STRAIGHT_M;
+            is_between && d.perp(&along).abs() <= STRAIGHT_M
+        })
+    }
+
+    /// Is a piece of a facet's outline a ridge, hip or valley?
+    pub(super) fn is_crease(&self, face: usize, piece: [usize; 2]) -> bool {
+        let meets = |v: usize, of: usize| {
+            let faces = [face.min(of), face.max(of)];
+            (self.meets.iter()).any(|m| m.vertex == v && m.faces == faces)
+        };
+        let others = (0..self.faces.len()).filter(|&other| other != face);
+        let mut others =
+            others.filter(|&other| self.ring_sides(other).any(|[u, v]| [v, u] == piece));
+        others.any(|other| piece.into_iter().all(|v| meets(v, other)))
+    }
+
     /// The unknowns that a side depends on.
     pub(super) fn unknowns(&self, side: &WireframeSide) -> Vec<usize> {
         let [u, v] = side.ends;

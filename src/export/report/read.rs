@@ -9,7 +9,8 @@ use serde_json::Value;
 use crate::geometry::{Plane, mean_point};
 use crate::ids::{BuildingId, FacetId};
 use crate::model::{
-    Building, CornerUncertainty, Facet, FacetUncertainty, RoofModel, Solid, SolidFace, Surface,
+    Building, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
+    Solid, SolidFace, Surface,
 };
 
 /// Roofs are no steeper than this, as the vertical part of a unit normal; what is called a roof and
@@ -230,14 +231,15 @@ fn facet_of(id: BuildingId, plane: Plane, rings: &[Vec<Point3<f64>>], surface: &
         similarity: number("similarity").unwrap_or(0.0),
         real_ratio: number("realLineRatio").unwrap_or(0.0),
         probability: number("probability").unwrap_or(1.0),
-        uncertainty: uncertainty_of(surface, &rings[0]),
+        uncertainty: uncertainty_of(surface, rings),
         lines: Vec::new(),
         half_planes: Vec::new(),
         proposals: Vec::new(),
     }
 }
 
-fn uncertainty_of(surface: &Value, outer: &[Point3<f64>]) -> Option<FacetUncertainty> {
+fn uncertainty_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<FacetUncertainty> {
+    let outer = &rings[0];
     let stated = list(&surface["cornerSigma"])?;
     let corner = |(at, sigma): (&Point3<f64>, &Value)| match numbers(sigma).as_deref() {
         Some(&[x, y, z]) => Some(CornerUncertainty {
@@ -251,7 +253,27 @@ fn uncertainty_of(surface: &Value, outer: &[Point3<f64>]) -> Option<FacetUncerta
         height_m: surface["heightSigma"].as_f64()?,
         slope_deg: surface["slopeSigmaDeg"].as_f64()?,
         corners: corners.filter(|corners| corners.len() == outer.len())?,
+        sides: sides_of(surface, rings).unwrap_or_default(),
     })
+}
+
+/// The sides of all rings; `None` where the file does not have them all.
+fn sides_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<Vec<SideUncertainty>> {
+    let [sigmas, supports] = ["sideSigma", "sideSupport"].map(|name| list(&surface[name]));
+    let (sigmas, supports) = (sigmas?, supports?);
+    let mut sides = Vec::new();
+    for (i, ring) in rings.iter().enumerate() {
+        let [sigmas, supports] = [sigmas, supports].map(|of| of.get(i).and_then(list));
+        let (sigmas, supports) = (sigmas?, supports?);
+        for (k, p) in ring.iter().enumerate() {
+            sides.push(SideUncertainty {
+                ends: [p.xy(), ring[(k + 1) % ring.len()].xy()],
+                sigma_m: sigmas.get(k)?.as_f64()?,
+                support: SideSupport::named(supports.get(k)?.as_str()?)?,
+            });
+        }
+    }
+    Some(sides)
 }
 
 fn names(value: &Value) -> Vec<String> {
