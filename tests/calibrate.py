@@ -468,7 +468,7 @@ def calibrate_uncertainty(args, truth, scenes):
     """Fits how far the stated standard deviations of facets and corners are inflated, and writes it."""
     path = TABLES / 'uncertainty.json'
     present = json.loads(path.read_text())
-    found, used = {kind: [] for kind in roof_sigmas.KINDS}, set()
+    found, used = {kind: [] for kind in (*roof_sigmas.KINDS, 'outline')}, set()
     for scene in scenes:
         city = RUNS / scene.name / 'strict' / 'model.city.json'
         # The old scenes have an exact orientation, which no photograph has.
@@ -478,16 +478,44 @@ def calibrate_uncertainty(args, truth, scenes):
                 found[kind] += errors
     table = {'source': f'{len(found["height"])} facets of {told_scenes(used)}'}
     for kind, errors in found.items():
-        error, stated, pixel = np.array(errors).T
-        scale, floor = (present[kind][k] for k in ('scale', 'floor_px'))
-        adjusted = np.sqrt(np.maximum(stated**2 - (floor * pixel) ** 2, 0)) / scale
-        scale, floor = inflation(error, adjusted, pixel)
-        table[kind] = {'scale': round(scale, 2), 'floor_px': round(floor, 2)}
-        sigma = np.hypot(scale * adjusted, floor * pixel)
-        print(f'{kind}: {roof_sigmas.coverage(errors)}; scale {scale:.2f}, floor {floor:.2f} px: '
-              f'{roof_sigmas.coverage(list(zip(error, sigma, pixel)))}')
+        if kind in present:
+            error, stated, pixel = np.array(errors).T
+            adjusted = before_inflation(stated, pixel, present[kind])
+            scale, floor = inflation(error, adjusted, pixel)
+            table[kind] = {'scale': round(scale, 2), 'floor_px': round(floor, 2)}
+            sigma = np.hypot(scale * adjusted, floor * pixel)
+            print(f'{kind}: {roof_sigmas.coverage(errors)}; scale {scale:.2f}, floor {floor:.2f} px: '
+                  f'{roof_sigmas.coverage(list(zip(error, sigma, pixel)))}')
+    table['sides'] = side_inflations(found['outline'], present['sides'])
     if not args.dry:
         path.write_text(re.sub(r'\{\s+("scale"[^}]+?)\s+\}', lambda m: '{' + ' '.join(m[1].split()) + '}', json.dumps(table, indent=1)) + '\n')
+
+
+def before_inflation(stated, pixel, table):
+    """The standard deviations of the adjustment."""
+    return np.sqrt(np.maximum(stated**2 - (table['floor_px'] * pixel) ** 2, 0)) / table['scale']
+
+
+def side_inflations(outlines, present):
+    """Scales and floors of sides by what they rest on, first each by itself, then all by one factor, with which two thirds
+    of the areas are within one standard deviation: sides of one outline are wrong together."""
+    table, sides = {}, [side for _, of in outlines for side in of]
+    for support, inflated in present.items():
+        error, stated, pixel = np.array([side[2:] for side in sides if side[0] == support]).T
+        table[support] = inflation(error, before_inflation(stated, pixel, inflated), pixel)
+    ratios = []
+    for error, of in outlines:
+        variance = 0
+        for support, length, _, stated, pixel in of:
+            scale, floor = table[support]
+            variance += length**2 * ((scale * before_inflation(stated, pixel, present[support])) ** 2 + (floor * pixel) ** 2)
+        ratios.append(abs(error) / math.sqrt(variance))
+    together = float(np.quantile(ratios, NORMAL[0]))
+    for support, (scale, floor) in table.items():
+        print(f'side on {support}: scale {scale:.2f}, floor {floor:.2f} px, times {together:.2f}')
+    print(f'areas within one {np.mean(np.array(ratios) <= together):.2f}, two {np.mean(np.array(ratios) <= 2 * together):.2f}')
+    return {support: {'scale': round(scale * together, 2), 'floor_px': round(floor * together, 2)}
+            for support, (scale, floor) in table.items()}
 
 
 def inflation(error, adjusted, pixel):

@@ -21,6 +21,8 @@ import sys
 # A corner farther away is not the same corner inexactly found, metres.
 NEAR_M = 0.5
 KINDS = ('height', 'slope', 'corner_plan', 'corner_height', 'area', 'length')
+# What the place of a side rests on, as files name it and as src/evidence/uncertainty.json does.
+SUPPORTS = {'edges': 'edges', 'fewEdges': 'few_edges', 'planes': 'planes', 'nothing': 'nothing'}
 # Kinds of edges that the truth and the report name alike.
 EDGES = ('ridge', 'hip', 'valley', 'eave', 'rake')
 
@@ -30,14 +32,14 @@ def main():
     sys.path.insert(0, str(scorer.parent))
     import score
 
-    found = {kind: [] for kind in KINDS}
+    found = {kind: [] for kind in (*KINDS, 'outline')}
     for scene in scenes:
         path = results / scene.name / 'model.city.json'
         if path.is_file():
             for kind, errors in compare(score, scene, path).items():
                 found[kind] += errors
-    for kind, errors in found.items():
-        print(f'{kind:14} {coverage(errors)}')
+    for kind in KINDS:
+        print(f'{kind:14} {coverage(found[kind])}')
     shares = sorted(abs(error) / true for error, _, true in found['area'])
     if shares:
         print(f'error of an area: median {100 * shares[len(shares) // 2]:.2f} %')
@@ -63,7 +65,7 @@ def compare(score, scene, path):
     centre = np.mean([(x, y, f.z(x, y)) for f, (x, y) in zip(truth, middles)], axis=0)
     pixel = score.scene_gsd(str(scene), centre)
     faces, _ = score.read_cityjson(str(path), centre, origin)
-    found = {kind: [] for kind in KINDS}
+    found = {kind: [] for kind in (*KINDS, 'outline')}
     known = surfaces(path)
     lengths = true_lengths(scene)
     for face in faces:
@@ -90,10 +92,30 @@ def compare(score, scene, path):
             slant = math.hypot(1, *true.abc[:2])
             area = true.poly.area * slant
             found['area'].append((surface['area'] - area, surface['areaSigma'], area))
+            error = face.poly.area - true.poly.area
+            found['outline'].append((error, sides_beside(true.poly.exterior, (ring + move)[:, :2], surface, pixel)))
             for kind, length in lengths.get(true.id, {}).items():
                 if f'{kind}Sigma' in surface['lengths']:
                     found['length'].append((surface['lengths'][kind] - length, surface['lengths'][f'{kind}Sigma'], length))
     return found
+
+
+def sides_beside(outline, ring, surface, pixel):
+    """Of every side what it rests on, its length, how far the true outline lies outside of it in the mean, its standard
+    deviation and a ground pixel."""
+    import numpy as np
+    from shapely.geometry import Point
+
+    sides = []
+    for p, q, sigma, support in zip(ring, np.roll(ring, -1, axis=0), surface['sideSigma'][0], surface['sideSupport'][0]):
+        length = np.hypot(*(q - p))
+        if length > 0:
+            places = [p + (q - p) * share for share in np.linspace(0.05, 0.95, 10)]
+            nearest = [outline.interpolate(outline.project(Point(place))) for place in places]
+            outwards = np.array([q[1] - p[1], p[0] - q[0]]) / length
+            apart = np.mean([np.dot((at.x, at.y) - place, outwards) for place, at in zip(places, nearest)])
+            sides.append((SUPPORTS[support], length, apart, sigma, pixel))
+    return sides
 
 
 def true_lengths(scene):

@@ -2,10 +2,11 @@
 //! and rakes, heights, volumes, each with its standard deviation, and the photographs that show it.
 //!
 //! ```text
-//! edges        kinds of edges, from the facets alone
-//! estimate     a number and its standard deviation
-//! shape        a building as a function of uncertain numbers, and the propagation of their errors
-//! photographs  which views show a facet
+//! edges          kinds of edges, from the facets alone
+//! estimate       a number and its standard deviation
+//! shape          a building as a function of uncertain numbers, and the propagation of their errors
+//! straight_sides corners in plan, and the straight sides between them
+//! photographs    which views show a facet
 //! ```
 //!
 //! Heights and volumes are above the ground as the building has it; how well the height of the
@@ -15,6 +16,7 @@ mod edges;
 mod estimate;
 mod photographs;
 mod shape;
+mod straight_sides;
 
 pub use edges::{RoofEdge, RoofEdgeKind, roof_edges};
 pub use estimate::Estimate;

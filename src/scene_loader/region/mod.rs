@@ -4,6 +4,7 @@
 //! so the part is the bounding box of the region at the lowest and at the highest possible height,
 //! and a margin.
 
+mod detail;
 mod view_choice;
 
 use nalgebra::{Point2, Point3, Vector3};
@@ -87,7 +88,8 @@ impl RegionOfInterest {
         }
         let showing = views.len();
         let whole: Vec<Camera> = views.iter().map(|v| v.whole.clone()).collect();
-        keep(views, &self.most_telling(&whole, most));
+        let shares = detail::shares_of_information(files, views);
+        keep(views, &self.most_telling(&whole, &shares, most));
         let mut warnings = Vec::new();
         if !blind.is_empty() {
             let names = listed(blind.iter());
@@ -102,8 +104,9 @@ impl RegionOfInterest {
         })
     }
 
-    /// Indices of the cameras that say most about the region, in their order.
-    fn most_telling(&self, cameras: &[Camera], most: Option<usize>) -> Vec<usize> {
+    /// Indices of the cameras that say most about the region, in their order; their photographs
+    /// have such shares of the information that they could have.
+    fn most_telling(&self, cameras: &[Camera], shares: &[f64], most: Option<usize>) -> Vec<usize> {
         let t = |i: u32| (f64::from(i) + 0.5) / f64::from(COMPARED_AT);
         let z = 0.5 * (self.low.z + self.high.z);
         let place = |i: u32| {
@@ -112,7 +115,13 @@ impl RegionOfInterest {
             Point3::new(at(0, u), at(1, v), z)
         };
         let places: Vec<Point3<f64>> = (0..COMPARED_AT * COMPARED_AT).map(place).collect();
-        view_choice::most_telling(cameras, &places, TALLEST_M, most.unwrap_or(MOST_VIEWS))
+        view_choice::most_telling(
+            cameras,
+            shares,
+            &places,
+            TALLEST_M,
+            most.unwrap_or(MOST_VIEWS),
+        )
     }
 
     /// Column, row, width, height of the part of a view that may show the region; `None` where it
@@ -279,7 +288,11 @@ pub(crate) fn cut_scene(scene: &mut Scene, roi: [f64; 4], most: Option<usize>) -
         return Err(region.unseen(showing, &cameras));
     }
     let seeing: Vec<Camera> = scene.views.iter().map(|v| v.camera.clone()).collect();
-    keep(&mut scene.views, &region.most_telling(&seeing, most));
+    let shares = vec![1.0; seeing.len()];
+    keep(
+        &mut scene.views,
+        &region.most_telling(&seeing, &shares, most),
+    );
     scene
         .warnings
         .extend(notice_of_choice(showing, scene.views.len()));

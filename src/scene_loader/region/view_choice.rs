@@ -4,10 +4,11 @@
 //! surface it has the information (Fisher)
 //!
 //! ```text
-//! cos(zenith distance of the ray) / s^2  (I - r r^T)     r its direction, s size of a pixel there
+//! q cos(zenith distance of the ray) / s^2  (I - r r^T)   r its direction, s size of a pixel there
 //! ```
 //!
-//! and views together the sum of theirs. The choice is greedy and D-optimal: the next view is the
+//! q being the share of what a sharp and well exposed photograph tells, and views together the sum
+//! of theirs. The choice is greedy and D-optimal: the next view is the
 //! one that raises the sum of log det over the region most. A view that repeats another adds
 //! little, one across the first baselines or from the side much.
 
@@ -23,11 +24,13 @@ struct Patch {
     information: Matrix3<f64>,
 }
 
-/// Indices of cameras, in their order, that say most about surfaces at these places, which are
+/// Indices of cameras, in their order, that say most about surfaces at these places, of photographs
+/// with such `shares` of the information that they could have; places are
 /// known to within `unknown_m` metres before: at most `most`, or so many more that a place is seen
 /// by half as many in the mean. Views that show a part of the places only are read in part.
 pub(crate) fn most_telling(
     cameras: &[Camera],
+    shares: &[f64],
     places: &[Point3<f64>],
     unknown_m: f64,
     most: usize,
@@ -48,7 +51,9 @@ pub(crate) fn most_telling(
     let shown = patches.iter().filter(is_shown).count();
     let mut seen = 0;
     while chosen.len() < most || 2 * seen < most * shown {
-        let gains = crate::execution::map(&waiting, |_, &view| gain(&cameras[view], &patches));
+        let gains = crate::execution::map(&waiting, |_, &view| {
+            gain(&cameras[view], shares[view], &patches)
+        });
         // Of equal ones the first.
         let best = (0..gains.len())
             .rev()
@@ -56,7 +61,7 @@ pub(crate) fn most_telling(
         let Some(best) = best else { break };
         let view = waiting.remove(best);
         for patch in &mut patches {
-            patch.information += information(&cameras[view], patch);
+            patch.information += information(&cameras[view], patch) * shares[view];
         }
         seen += (patches.iter())
             .filter(|patch| sees(&cameras[view], patch))
@@ -68,9 +73,9 @@ pub(crate) fn most_telling(
 }
 
 /// By how much a view more raises the sum of log det over all patches, nats.
-fn gain(camera: &Camera, patches: &[Patch]) -> f64 {
+fn gain(camera: &Camera, share: f64, patches: &[Patch]) -> f64 {
     let of_patch = |patch: &Patch| {
-        let with = patch.information + information(camera, patch);
+        let with = patch.information + information(camera, patch) * share;
         ln(with.determinant()) - ln(patch.information.determinant())
     };
     patches.iter().map(of_patch).sum()
@@ -121,7 +126,7 @@ mod tests {
         let cameras: Vec<Camera> = (0..300)
             .map(|i| at(f64::from(i % 20) * 21.0, f64::from(i / 20) * 28.0))
             .collect();
-        let chosen = most_telling(&cameras, &places, 60.0, 12);
+        let chosen = most_telling(&cameras, &[1.0; 300][..cameras.len()], &places, 60.0, 12);
         let seen_by = |place: &Point3<f64>| {
             let sees = |&&i: &&usize| {
                 let image = cameras[i].project(place);
@@ -139,7 +144,13 @@ mod tests {
     #[test]
     fn a_repeated_view_is_left_out_and_a_cross_baseline_taken() {
         let cameras = [at(0.0, 0.0), at(0.2, 0.0), at(30.0, 0.0), at(0.0, 30.0)];
-        let chosen = most_telling(&cameras, &[Point3::origin()], 60.0, 3);
+        let chosen = most_telling(
+            &cameras,
+            &[1.0; 300][..cameras.len()],
+            &[Point3::origin()],
+            60.0,
+            3,
+        );
         assert_eq!(chosen.len(), 3);
         assert!(chosen.contains(&2) && chosen.contains(&3), "{chosen:?}");
     }
@@ -148,7 +159,13 @@ mod tests {
     fn views_that_do_not_show_the_place_come_last() {
         let cameras = [at(900.0, 0.0), at(0.0, 0.0), at(20.0, 0.0), at(0.0, 20.0)];
         assert_eq!(
-            most_telling(&cameras, &[Point3::origin()], 60.0, 3),
+            most_telling(
+                &cameras,
+                &[1.0; 300][..cameras.len()],
+                &[Point3::origin()],
+                60.0,
+                3
+            ),
             [1, 2, 3]
         );
     }
@@ -156,13 +173,42 @@ mod tests {
     #[test]
     fn few_enough_views_are_all_taken() {
         let cameras = [at(0.0, 0.0), at(900.0, 0.0)];
-        assert_eq!(most_telling(&cameras, &[Point3::origin()], 60.0, 2), [0, 1]);
+        assert_eq!(
+            most_telling(
+                &cameras,
+                &[1.0; 300][..cameras.len()],
+                &[Point3::origin()],
+                60.0,
+                2
+            ),
+            [0, 1]
+        );
+    }
+
+    #[test]
+    fn of_two_like_views_the_sharper_is_taken_but_for_what_only_the_other_shows() {
+        let cameras = [at(0.0, 0.0), at(1.0, 0.0), at(30.0, 0.0)];
+        let place = [Point3::origin()];
+        let chosen = |shares: [f64; 3]| most_telling(&cameras, &shares, &place, 60.0, 2);
+        assert_eq!(chosen([0.1, 1.0, 1.0]), [1, 2]);
+        assert_eq!(chosen([1.0, 0.1, 1.0]), [0, 2]);
+        // A baseline tells more than a repetition, though it is blurred.
+        assert!(chosen([1.0, 1.0, 0.5]).contains(&2));
     }
 
     #[test]
     fn the_nearer_of_two_like_views_is_taken() {
         let low = nadir(0.0, 0.0, 50.0);
         let cameras = [at(0.0, 0.0), low];
-        assert_eq!(most_telling(&cameras, &[Point3::origin()], 60.0, 1), [1]);
+        assert_eq!(
+            most_telling(
+                &cameras,
+                &[1.0; 300][..cameras.len()],
+                &[Point3::origin()],
+                60.0,
+                1
+            ),
+            [1]
+        );
     }
 }
