@@ -4,6 +4,7 @@ use nalgebra::{Point2, Point3, Vector2};
 
 use super::draft::{At, Draft, DraftFacet};
 use super::outcome::NotApplied;
+use super::place::corners;
 use super::plan::Region;
 use super::shape::{LEAST_AREA_M2, OFF_M, turned, without};
 use crate::geometry::{Plane, Segment3};
@@ -11,11 +12,14 @@ use crate::lines3d::Line3d;
 use crate::model::Facet;
 use crate::planes::HalfPlane;
 
-/// Half-planes farther from a plane than this many standard deviations are others.
+/// Planes and places farther apart than this many standard deviations are two.
 const DIFFERENT_SIGMAS: f64 = 3.0;
 /// A place this far beside a line in plan is on that side of it, metres: less than the width of
 /// any facet.
 const BESIDE_M: f64 = 0.01;
+
+/// An edge is longer, metres.
+const LEAST_M: f64 = 0.1;
 
 /// A stretch of a line in plan across a facet, from side to side.
 struct Chord {
@@ -74,9 +78,10 @@ fn halves(
 ) -> Option<(Vec<DraftFacet>, [Point3<f64>; 2])> {
     let whole = draft.get(at);
     let own = &whole.facet.plane;
-    let along = plan_direction(&line.segment);
+    let [from, to] = stretch.map(|t| at_corner(&in_plan(&line.segment, t), &whole.facet, line));
+    let along = (to - from).try_normalize(LEAST_M)?;
     let aside = Vector2::new(-along.y, along.x) * BESIDE_M;
-    let middle = in_plan(&line.segment, 0.5 * (stretch[0] + stretch[1]));
+    let middle = from + (to - from) * 0.5;
     let region = Region::of(&whole.facet);
     let left = region
         .left_of(&middle, &along)
@@ -98,12 +103,9 @@ fn halves(
     });
     // Where one half keeps the plane of the facet, the edge lies in that.
     let keeps = |side: usize| sides[side].is_some() && swept[side].is_none();
-    let ends = stretch.map(|t| {
-        let p = in_plan(&line.segment, t);
-        match keeps(0) || keeps(1) {
-            true => own.lift(p.x, p.y),
-            false => Point3::new(p.x, p.y, height_at(&line.segment, t)),
-        }
+    let ends = [from, to].map(|p| match keeps(0) || keeps(1) {
+        true => own.lift(p.x, p.y),
+        false => Point3::new(p.x, p.y, height_above(&line.segment, &p)),
     });
     let edge = Segment3::new(ends[0], ends[1]);
     let is_off = ends
@@ -177,6 +179,17 @@ fn in_plan(line: &Segment3, t: f64) -> Point2<f64> {
     line.p0.xy() + plan_direction(line) * t
 }
 
-fn height_at(line: &Segment3, t: f64) -> f64 {
+/// Height of a line beside a place in plan.
+fn height_above(line: &Segment3, p: &Point2<f64>) -> f64 {
+    let t = plan_direction(line).dot(&(p - line.p0.xy()));
     line.p0.z + (line.p1.z - line.p0.z) * t / (line.p1.xy() - line.p0.xy()).norm()
+}
+
+/// The corner of a facet from which a line's place cannot be told, or else that place.
+fn at_corner(p: &Point2<f64>, facet: &Facet, line: &Line3d) -> Point2<f64> {
+    let near = corners(facet)
+        .map(|q| ((q.xy() - p).norm(), q.xy()))
+        .filter(|(apart, _)| *apart <= DIFFERENT_SIGMAS * line.sigma_m);
+    let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.map_or(*p, |(_, corner)| corner)
 }
