@@ -10,7 +10,7 @@ use crate::geometry::{Segment2, bounds};
 use crate::ids::{LineId, ViewId};
 use crate::linematch::line_of_drawn;
 use crate::lines3d::{Line3d, Side};
-use crate::params::Params;
+use crate::params::{Acceptance, Params, SweepParams};
 use crate::planes::{HalfPlane, PointsOfInterest, SweepTrace, sweep_side};
 use crate::raster::Gray;
 use crate::scene::{Scene, Survey, View};
@@ -65,14 +65,23 @@ fn range_of(house: &House) -> [f64; 2] {
     [house.building.ground_z, top + 0.5 * width]
 }
 
+/// Least probability of a half-plane beside a drawn edge: likelier there than not. No grouping
+/// follows, which tolerates few that are wrong, and without one the half keeps its plane.
+const LEAST_PROBABILITY: f64 = 0.5;
+
 /// The half-planes that the photographs show to the left and to the right of a line (B99 4.1).
 pub(super) fn sides(scene: &Scene, line: &Line3d, params: &Params) -> [Option<HalfPlane>; 2] {
-    let near = around(scene, line, 2.0 * params.sweep.depth_px);
-    let points = PointsOfInterest::detect_all(&near, &params.sweep);
+    let sweep = SweepParams {
+        acceptance: Acceptance::Posterior,
+        min_probability: LEAST_PROBABILITY,
+        ..params.sweep.clone()
+    };
+    let near = around(scene, line, 2.0 * sweep.depth_px);
+    let points = PointsOfInterest::detect_all(&near, &sweep);
     let mut trace = SweepTrace::default();
     [Side::Left, Side::Right].map(|side| {
         let id = LineId::from_index(0);
-        sweep_side(&near, &points, id, line, side, &params.sweep, &mut trace)
+        sweep_side(&near, &points, id, line, side, &sweep, &mut trace)
     })
 }
 

@@ -21,8 +21,8 @@ const POLARITIES: [(SegmentKind, bool); 4] = [
 ];
 
 /// The line near `start` that fits the edge `own` of one view and the edges that the other views
-/// show along it, two of them at least; `None` where there is none. It is weighed as every other
-/// line is, but not rejected by its odds: that there is an edge, somebody has said.
+/// show along it, two of them at least, if it is likelier true than false; `None` where there is
+/// none.
 pub(crate) fn complete_from_edges(
     scene: &Scene,
     start: &Segment3,
@@ -30,10 +30,6 @@ pub(crate) fn complete_from_edges(
     z_range: [f64; 2],
     (params, fitting): (&MatchParams, &Lines3dParams),
 ) -> Option<CompletedLine> {
-    let params = MatchParams {
-        least_nats: f64::NEG_INFINITY,
-        ..params.clone()
-    };
     let undetected: Vec<Vec<ImageSegment>> = vec![Vec::new(); scene.views.len()];
     let none = PreparedSegments::new(scene, &undetected);
     let context = MatchContext {
@@ -41,7 +37,7 @@ pub(crate) fn complete_from_edges(
         segments: &undetected,
         prepared: &none,
         z_range,
-        params: &params,
+        params,
         fitting,
         compatibility: Compatibility {
             contrast: false,

@@ -435,7 +435,9 @@ test("a missing ridge is drawn by two clicks in one photograph", async ({ page }
   /** Clicks a pixel of the photograph, which is shown whole. */
   const click = async ({ x, y }: { x: number; y: number }) => {
     const box = await canvas.boundingBox();
-    const size = await page.evaluate(() => document.querySelector("figure.image-view canvas")?.clientHeight ?? 0);
+    const size = await page.evaluate(
+      () => document.querySelector("figure.image-view canvas")?.clientHeight ?? 0,
+    );
     if (box === null || size === 0) {
       throw new Error("the photograph is not shown");
     }
@@ -479,7 +481,9 @@ test("a missing ridge is drawn by two clicks in one photograph", async ({ page }
     await draw.click();
     await click({ x: 3, y: 3 });
     await click({ x: 40, y: 3 });
-    await expect(panel.getByText(/Not applied: (no building stands there|too few other photographs)/)).toBeVisible();
+    await expect(
+      panel.getByText(/Not applied: (no building stands there|too few other photographs)/),
+    ).toBeVisible();
   });
   expect(problems).toEqual([]);
 });
