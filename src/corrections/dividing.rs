@@ -86,8 +86,9 @@ fn halves(
     let left = region
         .left_of(&middle, &along)
         .connected_at(&(middle + aside));
-    let rest = region.without(&left);
-    let right = rest.connected_at(&(middle - aside));
+    let right = region.without(&left).connected_at(&(middle - aside));
+    // Beyond its ends the edge divides nothing: what lies there belongs to the half beside it.
+    let left = region.without(&right);
     let regions = [&left, &right];
     if regions.iter().any(|half| half.area() < LEAST_AREA_M2) {
         return None;
@@ -126,7 +127,6 @@ fn halves(
             facets.push(part);
         }
     }
-    facets.extend(whole.over(&rest.without(&right)));
     Some((facets, ends))
 }
 
