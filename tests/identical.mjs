@@ -53,15 +53,36 @@ function run(program, args) {
 // The same with corrections of what the scene itself shows.
 async function compareCorrected(scene) {
     const city = JSON.parse(runNative(scene, "lines").get("model.city.json").toString());
-    const corrections = correctionsOf(city);
+    const corrections = correctionsOf(city, await sceneOf(scene));
     const { bad, report } = await compareRuns(scene, "lines", corrections);
     const { counts } = report.stages.find(({ stage }) => stage === "corrections");
     console.log(`${basename(scene)}: ${counts.corrections} of ${corrections.length} corrections applied`);
     return counts.corrections === corrections.length ? bad : [...bad, "corrections"];
 }
 
-// Another slope, a moved corner, a lifted ground and a deleted facet, of the largest building's largest facets.
-function correctionsOf({ CityObjects, transform: { scale, translate }, vertices }) {
+// The views of a scene, and its origin.
+async function sceneOf(scene) {
+    const { session } = await openSession();
+    addFiles(session, scene);
+    session.load({});
+    return session.scene();
+}
+
+// The end of the ridge of two roof faces that fall in opposite directions: the longest edge that they share.
+function ridgeOf(roofs) {
+    const key = (p) => p.map((x) => x.toFixed(3)).join();
+    const edges = roofs.flatMap((face) =>
+        face.corners.map((p, i) => ({ face, ends: [p, face.corners[(i + 1) % face.corners.length]] })),
+    );
+    const length = ({ ends: [p, q] }) => Math.hypot(...p.map((x, i) => x - q[i]));
+    const faces = (a) => edges.find((b) => key(a.ends[0]) === key(b.ends[1]) && key(a.ends[1]) === key(b.ends[0]))?.face;
+    const shared = edges.map((edge) => ({ ...edge, other: faces(edge) })).filter(({ other }) => other !== undefined);
+    return shared.sort((a, b) => length(b) - length(a))[0];
+}
+
+// Two facets merged and the edge between them drawn again in the first view, another slope, a moved corner, a lifted
+// ground and a deleted facet, of the largest building's largest facets.
+function correctionsOf({ CityObjects, transform: { scale, translate }, vertices }, { origin, views: [view] }) {
     const place = (v) => vertices[v].map((x, i) => x * scale[i] + translate[i]);
     const roofs = Object.values(CityObjects).flatMap(({ geometry = [] }) =>
         geometry.flatMap(({ boundaries: [shell = []], semantics: { values, surfaces } }) =>
@@ -79,8 +100,17 @@ function correctionsOf({ CityObjects, transform: { scale, translate }, vertices 
         return { at, normal };
     };
     const [first, second, third] = largest;
+    const { face, other, ends } = ridgeOf(largest);
+    const pixels = ends.map((world) => {
+        const [u, v, w] = [0, 4, 8].map((row) =>
+            [...world.map((x, i) => x - origin[i]), 1].reduce((sum, x, i) => sum + view.projection[row + i] * x, 0),
+        );
+        return [u / w + 1, v / w - 1];
+    });
     const [from] = [...second.corners].sort((a, b) => a[2] - b[2]);
     return [
+        { correction: "merge", facet: facetOf(face), with: facetOf(other) },
+        { correction: "add_edge", photograph: view.name, pixels },
         { correction: "set_slope", facet: facetOf(first), slope_deg: first.slopeDeg + 2 },
         { correction: "move_corner", from, to: from.map((x, i) => x + [0.2, 0.1, 0.05][i]) },
         { correction: "set_ground", building: facetOf(first).at, height: from[2] - 30 },

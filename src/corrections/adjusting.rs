@@ -27,6 +27,17 @@ const LEVEL: f64 = 1e-3;
 #[derive(Clone, Debug)]
 pub(super) struct Held(Correction);
 
+impl Held {
+    /// An edge, where it was measured with this standard deviation, metres.
+    pub(super) fn edge(ends: &[Point3<f64>; 2], sigma_m: f64) -> Self {
+        Self(Correction::MoveEdge {
+            from: *ends,
+            to: *ends,
+            sigma_m,
+        })
+    }
+}
+
 /// The statements of a correction about one building.
 struct About {
     house: usize,

@@ -7,6 +7,8 @@
 //! plan       regions of the plan: intersection, difference, union
 //! closing    the place of a deleted facet, divided between its neighbours
 //! shape      facets deleted, merged, split, added
+//! drawn      the line of an edge drawn in one photograph, and the planes beside it
+//! dividing   facets divided along such a line
 //! adjusting  corners, edges and slopes stated; the building is adjusted to them
 //! ```
 //!
@@ -16,7 +18,9 @@
 
 mod adjusting;
 mod closing;
+mod dividing;
 mod draft;
+mod drawn;
 mod outcome;
 mod place;
 mod plan;
@@ -29,9 +33,12 @@ pub use outcome::{CorrectionTrace, NotApplied};
 use nalgebra::{Point3, Vector3};
 
 use self::adjusting::{Held, adjust, hold};
+use self::dividing::divide;
 use self::draft::Draft;
+use self::drawn::{line_in_space, sides};
+use crate::lines3d::Line3d;
 use crate::model::RoofModel;
-use crate::params::{Correction, FacetPlace, RefineParams};
+use crate::params::{Correction, FacetPlace, Params, RefineParams};
 use crate::scene::Scene;
 
 /// Corrects a model, in the order of the corrections.
@@ -39,21 +46,36 @@ pub fn correct(
     scene: &Scene,
     model: &RoofModel,
     corrections: &[Correction],
-    params: &RefineParams,
+    params: &Params,
 ) -> (RoofModel, CorrectionTrace) {
     let mut draft = Draft::new(model);
     let mut held: Vec<Held> = Vec::new();
-    let mut outcomes = Vec::new();
+    let (mut outcomes, mut lines) = (Vec::new(), Vec::new());
     for correction in corrections {
         let local = in_local_frame(correction, &scene.origin);
-        let outcome = apply(scene, &mut draft, &local, &held, params);
+        let mut line = None;
+        let outcome = match &local {
+            Correction::AddEdge { photograph, pixels } => {
+                line_in_space(scene, &draft, photograph, pixels, params).and_then(|found| {
+                    line = Some(found.segment);
+                    add_edge(scene, &mut draft, &found, &mut held, params)
+                })
+            }
+            _ => apply(scene, &mut draft, &local, &held, &params.roof.refine),
+        };
+        lines.push(line);
         if outcome.is_ok() {
             hold(&local, &mut held);
         }
         outcomes.push(outcome.err());
     }
     let (model, sources) = draft.into_model();
-    (model, CorrectionTrace { outcomes, sources })
+    let trace = CorrectionTrace {
+        outcomes,
+        lines,
+        sources,
+    };
+    (model, trace)
 }
 
 fn apply(
@@ -83,7 +105,22 @@ fn apply(
         | Correction::SetLevel { .. }
         | Correction::SetSlope { .. }
         | Correction::SetSymmetric { .. } => adjust(scene, draft, correction, held, params),
+        // Found in the photographs before.
+        Correction::AddEdge { .. } => Err(NotApplied::NoLine),
     }
+}
+
+/// Divides what lies along a line that was found for a drawn edge.
+fn add_edge(
+    scene: &Scene,
+    draft: &mut Draft,
+    line: &Line3d,
+    held: &mut Vec<Held>,
+    params: &Params,
+) -> Result<(), NotApplied> {
+    let edges = divide(draft, line, &sides(scene, line, params))?;
+    held.extend(edges.iter().map(|ends| Held::edge(ends, line.sigma_m)));
+    Ok(())
 }
 
 /// The same correction with its places in the frame of the scene.
@@ -111,6 +148,7 @@ fn in_local_frame(correction: &Correction, origin: &Vector3<f64>) -> Correction 
             place(facet);
             along.iter_mut().for_each(point);
         }
+        Correction::AddEdge { .. } => {}
         Correction::AddFacet { outline } => outline.iter_mut().for_each(point),
     }
     local

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::geometry::Segment3;
 use crate::ids::FacetId;
 
 /// Why a correction is not applied.
@@ -27,6 +28,12 @@ pub enum NotApplied {
     NotDivided,
     /// The place is not free, or the outline encloses no roof.
     NoRoom,
+    /// No photograph has that name.
+    NoPhotograph,
+    /// The two points are not in the photograph, or too near to each other for an edge.
+    NotInPhotograph,
+    /// Too few other photographs show an edge there.
+    NoLine,
     /// Numbers that no roof has.
     Implausible,
     /// The building cannot be adjusted to that.
@@ -48,6 +55,9 @@ impl NotApplied {
             Self::NotNeighbours => "the two are no neighbours in one building",
             Self::NotDivided => "the line does not divide the facet",
             Self::NoRoom => "its place is taken, or its outline encloses no roof",
+            Self::NoPhotograph => "no photograph has that name",
+            Self::NotInPhotograph => "the two points are no edge in the photograph",
+            Self::NoLine => "too few other photographs show an edge there",
             Self::Implausible => "no roof has such numbers",
             Self::NotAdjusted => "the building cannot be adjusted to it",
             Self::WouldNotClose => "the building would not close",
@@ -61,6 +71,9 @@ impl NotApplied {
 pub struct CorrectionTrace {
     /// For each correction why it is not applied; `None` for one that is.
     pub outcomes: Vec<Option<NotApplied>>,
+    /// For each correction the line that was found for what it draws in a photograph, metres, local
+    /// frame, also where that divides no facet; `None` for the others.
+    pub lines: Vec<Option<Segment3>>,
     /// For each facet of the corrected model the one that it was before; `None` for a new one.
     pub sources: Vec<Option<FacetId>>,
 }

@@ -6,7 +6,7 @@ use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point2, Point3, Vector2};
 
 use crate::geometry::{Plane, bounds};
-use crate::model::Facet;
+use crate::model::{Facet, inside};
 
 /// Parts of a region below this area are rounding, m^2: a sliver of 1 mm along an eave.
 const SLIVER_M2: f64 = 0.02;
@@ -57,6 +57,18 @@ impl Region {
         let left = Vector2::new(-reach.y, reach.x);
         let half = [at - reach, at + reach, at + reach + left, at - reach + left];
         self.and(&Self::ring(&half))
+    }
+
+    /// The connected part at a place, with its holes; nothing where the region is not.
+    pub(super) fn connected_at(&self, p: &Point2<f64>) -> Self {
+        let parts = self.parts().into_iter();
+        let ring_is_about = |ring: &Vec<[f64; 2]>| {
+            let lifted: Vec<Point3<f64>> =
+                (ring.iter().map(|&[x, y]| Point3::new(x, y, 0.0))).collect();
+            inside(&lifted, p)
+        };
+        let mut at = parts.filter(|part| part.iter().filter(|r| ring_is_about(r)).count() % 2 == 1);
+        at.next().map(Self).unwrap_or_default()
     }
 
     pub(super) fn area(&self) -> f64 {

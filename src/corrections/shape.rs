@@ -13,12 +13,12 @@ use crate::model::{Facet, is_simple};
 use crate::params::FacetPlace;
 
 /// Least area of a new facet in plan, m^2. Assumption: a roof window.
-const LEAST_AREA_M2: f64 = 0.25;
+pub(super) const LEAST_AREA_M2: f64 = 0.25;
 /// A drawn corner this near to one of the model is that one, metres. Assumption: a hand does not
 /// distinguish them in a photograph.
 const SNAP_M: f64 = 0.3;
 /// A line this far off a facet is off it, metres.
-const OFF_M: f64 = 0.02;
+pub(super) const OFF_M: f64 = 0.02;
 /// What is drawn lies no further from the origin of the scene, metres.
 const FAR_M: f64 = 1e5;
 /// Height of a building where nothing is known of the ground, metres. Assumption: a storey.
@@ -227,7 +227,7 @@ pub(super) fn mirror(
 }
 
 /// The facets of a building without some.
-fn without(facets: &[DraftFacet], gone: &[usize]) -> Vec<DraftFacet> {
+pub(super) fn without(facets: &[DraftFacet], gone: &[usize]) -> Vec<DraftFacet> {
     let left = facets.iter().enumerate().filter(|(i, _)| !gone.contains(i));
     left.map(|(_, f)| f.clone()).collect()
 }
@@ -261,7 +261,7 @@ fn snapped<'a>(p: &Point3<f64>, all: impl Iterator<Item = &'a Point3<f64>>) -> O
 }
 
 /// The plane through a line that lies nearest to the corners of a facet, in height.
-fn turned(facet: &Facet, line: &Segment3) -> Plane {
+pub(super) fn turned(facet: &Facet, line: &Segment3) -> Plane {
     let plan = line.p1.xy() - line.p0.xy();
     let (along, length) = (plan.normalize(), plan.norm());
     let slope = (line.p1.z - line.p0.z) / length;

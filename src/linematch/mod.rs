@@ -8,6 +8,8 @@
 //!    -> selection   winner takes all; each winner is completed over all views (nview)    3.2 - 3.4
 //!    -> join        lines that reproject onto each other become one                          3.4
 //!
+//! drawn             the line of an edge that somebody draws in one view
+//!
 //! segment_geometry  rays and interpretation plane of a segment; compatibility of two segments
 //! index             the segments near a place of an image
 //! pass, trace       first and second search; the outcome of every segment
@@ -22,6 +24,7 @@
 //! Invariant: a segment belongs to at most one line. The result does not depend on the order of the
 //! hypotheses.
 
+mod drawn;
 mod height;
 mod index;
 mod join;
@@ -39,6 +42,7 @@ mod trace;
 mod triples;
 mod view_selection;
 
+pub use drawn::line_of_drawn;
 pub use line_strip::EdgelScore;
 pub(crate) use nview::EDGE_MARGIN_PX;
 pub use nview::MatchRejection;

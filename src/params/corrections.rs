@@ -5,7 +5,7 @@
 //! in the frame of the orientation, Z up; each correction is about the model that those before it
 //! leave.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// Standard deviation of a corner or an edge that is put somewhere by hand, metres. Assumption: a
@@ -119,6 +119,14 @@ pub enum Correction {
         facet: FacetPlace,
         /// Two points of the edge.
         along: [Point3<f64>; 2],
+    },
+    /// An edge is missing: it is drawn in one photograph, and found in the others.
+    AddEdge {
+        /// The file name of the photograph.
+        photograph: String,
+        /// Its ends, [x, y] in pixels of the photograph as it is shown, without the distortion of
+        /// its lens: x right, y down, the centre of the first pixel at (0.5, 0.5).
+        pixels: [Point2<f64>; 2],
     },
     /// A facet is missing. What is below it loses its place.
     AddFacet {

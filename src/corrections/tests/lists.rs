@@ -129,6 +129,10 @@ fn corrections_are_read_as_they_were_written_and_refused_otherwise() {
             building: world([0.0; 3]),
             height: 7.0,
         },
+        Correction::AddEdge {
+            photograph: "a photograph.jpg".to_owned(),
+            pixels: [[1.5, 2.0], [30.25, 1e3]].map(nalgebra::Point2::from),
+        },
     ];
     let text = serde_json::to_string(&all).unwrap();
     assert_eq!(corrections_from_json(&text).unwrap(), all);
@@ -148,6 +152,14 @@ fn corrections_are_read_as_they_were_written_and_refused_otherwise() {
         (
             r#"[{"correction": "delete_building", "building": [1, 2, 3], "x": 1}]"#,
             "unknown field",
+        ),
+        (
+            r#"[{"correction": "add_edge", "photograph": "a.jpg", "pixels": [[1, 2]]}]"#,
+            "[0]",
+        ),
+        (
+            r#"[{"correction": "add_edge", "photograph": "a.jpg", "pixels": [[1, 2], [1e999, 3]]}]"#,
+            "number",
         ),
         (
             r#"[{"correction": "set_eave", "building": [1, 2, 3], "height": 1e999}]"#,
@@ -176,7 +188,7 @@ fn whatever_is_corrected_the_invariants_hold() {
                 let corners: Vec<Point3<f64>> =
                     model.facets.iter().flat_map(|f| f.outer.clone()).collect();
                 let corner = corners[(number(0.0, 7.99)) as usize] + Vector3::from(ORIGIN);
-                match number(0.0, 7.0) as usize {
+                match number(0.0, 8.0) as usize {
                     0 => Correction::DeleteFacet {
                         facet: here,
                         filled: None,
@@ -197,7 +209,12 @@ fn whatever_is_corrected_the_invariants_hold() {
                         facet: here,
                         slope_deg: number(0.0, 79.0),
                     },
-                    5 => Correction::Merge {
+                    5 => Correction::AddEdge {
+                        photograph: gable_scene(16).0.views[0].name.clone(),
+                        pixels: [[p[0] + 8.0, p[1] + 8.0], [q[0] + 8.0, q[1] + 8.0]]
+                            .map(nalgebra::Point2::from),
+                    },
+                    6 => Correction::Merge {
                         facet: here,
                         with: place(&model, -x, -y),
                     },

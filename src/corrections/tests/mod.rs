@@ -1,6 +1,7 @@
 //! Mistakes planted in models, and corrected.
 
 mod adjusted;
+mod drawn;
 mod facets;
 mod lists;
 
@@ -55,7 +56,7 @@ fn place(model: &RoofModel, x: f64, y: f64) -> FacetPlace {
 fn corrected(model: &RoofModel, corrections: &[Correction]) -> (RoofModel, CorrectionTrace) {
     let mut scene = gable_scene(16).0;
     scene.origin = Vector3::from(ORIGIN);
-    let (found, trace) = correct(&scene, model, corrections, &Params::default().roof.refine);
+    let (found, trace) = correct(&scene, model, corrections, &Params::default());
     assert_eq!(check_invariants(&found), []);
     assert_eq!(trace.outcomes.len(), corrections.len());
     assert_eq!(trace.sources.len(), found.facets.len());

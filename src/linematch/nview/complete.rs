@@ -55,7 +55,7 @@ pub(crate) fn complete_line(
 }
 
 impl MatchContext<'_> {
-    fn profile(
+    pub(super) fn profile(
         &self,
         line: &Segment3,
         segments: &[SegmentRef],

@@ -9,6 +9,7 @@
 //!    -> support     the views that support the stretch                                      3.2
 //!    -> checks      precision and heights; what speaks for the line                         3.4
 //!
+//! from_edges        the same from measured edges alone, for a drawn line
 //! context           the input of a completion, its result and the reasons for a rejection
 //! ```
 //!
@@ -20,6 +21,7 @@ mod complete;
 mod context;
 mod ends;
 mod fitting;
+mod from_edges;
 mod grow;
 mod profile;
 mod support;
@@ -27,4 +29,5 @@ mod support;
 pub(crate) use complete::complete_line;
 pub use context::MatchRejection;
 pub(crate) use context::{CompletedLine, IsTaken, MatchContext};
+pub(crate) use from_edges::{complete_from_edges, most_of_edge};
 pub(crate) use profile::EDGE_MARGIN_PX;

@@ -18,12 +18,13 @@ impl StageDefinition for Corrections {
     const NAME: &'static str = "corrections";
     const TITLE: &'static str = "Corrections";
     const SECTION: &'static str = "by hand";
-    const READS: &'static [&'static str] = &["corrections", "roof.refine"];
+    const READS: &'static [&'static str] =
+        &["corrections", "matching", "lines3d", "sweep", "roof.refine"];
     const NEEDS: &'static [Stage] = &[Stage::Rectangles, Stage::Facets];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let model = before.found_model().expect("stages run in their order");
-        Ok(correct(scene, model, &params.corrections, &params.roof.refine).into())
+        Ok(correct(scene, model, &params.corrections, params).into())
     }
 
     fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {

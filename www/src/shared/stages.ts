@@ -101,7 +101,7 @@ export const STAGES = [
     title: "Corrections",
     section: "by hand",
     methods: ["lines", "rectangles", "combined", "coplanar", "adjacency"],
-    reads: ["corrections", "roof.refine"],
+    reads: ["corrections", "matching", "lines3d", "sweep", "roof.refine"],
   },
   {
     name: "model",

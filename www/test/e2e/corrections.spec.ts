@@ -392,3 +392,98 @@ test("facets are deleted and made symmetric, and corners dragged, in the 3D view
   });
   expect(problems).toEqual([]);
 });
+
+/** Width and height of its photographs. */
+const SIZE_PX = [256, 256] as const;
+
+/** The image of a place of the world, by a view's 3 x 4 matrix, in which the centre of the first pixel is (0, 0). */
+function pixelOf(view: string, place: Place): { x: number; y: number } {
+  const file = houseFiles().find(({ name }) => name.endsWith(`${view}.P`));
+  const m = (file?.buffer.toString() ?? "").trim().split(/\s+/).map(Number);
+  const [u = 0, v = 0, w = 1] = [0, 4, 8].map((row) =>
+    [...place, 1].reduce((sum, x, i) => sum + x * (m[row + i] ?? 0), 0),
+  );
+  return { x: u / w + 0.5, y: v / w + 0.5 };
+}
+
+test("a missing ridge is drawn by two clicks in one photograph", async ({ page }) => {
+  test.slow();
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, houseFiles());
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model");
+  await openTab(page, "Model");
+  const truth = await roofOf(page);
+  const panel = page.getByTestId("corrections");
+  await panel.getByRole("heading", { name: "Corrections" }).click();
+  const done = panel.getByRole("list", { name: "Corrections so far" }).getByRole("listitem");
+  const west = truth.find(({ azimuthDeg, slopeDeg }) => Math.abs(azimuthDeg - 246) < 5 && slopeDeg > 30);
+  const east = truth.find(({ azimuthDeg }) => Math.abs(azimuthDeg - 66) < 5);
+  if (west === undefined || east === undefined) {
+    throw new Error("the house has a side wing");
+  }
+  await plant(page, [{ correction: "merge", facet: placeOf(west), with: placeOf(east) }]);
+  const wrong = await roofOf(page);
+  expect(wrong).toHaveLength(truth.length - 1);
+
+  const [photograph = ""] = houseFiles().flatMap(({ name }) => (name.endsWith(".jpg") ? [name] : []));
+  const view = photograph.replace(".jpg", "");
+  const [gable = west.corners[0], inner = west.corners[1]] = [...west.corners].sort((p, q) => q[2] - p[2]);
+  const draw = panel.getByRole("button", { name: "Draw an edge in a photograph" });
+  const canvas = page.getByRole("img", { name: new RegExp(`^${photograph}`) });
+  /** Clicks a pixel of the photograph, which is shown whole. */
+  const click = async ({ x, y }: { x: number; y: number }) => {
+    const box = await canvas.boundingBox();
+    const size = await page.evaluate(
+      () => document.querySelector("figure.image-view canvas")?.clientHeight ?? 0,
+    );
+    if (box === null || size === 0) {
+      throw new Error("the photograph is not shown");
+    }
+    const scale = Math.min((box.width - 16) / SIZE_PX[0], (box.height - 16) / SIZE_PX[1]);
+    const [left, top] = [box.width - SIZE_PX[0] * scale, box.height - SIZE_PX[1] * scale];
+    await page.mouse.click(box.x + left / 2 + x * scale, box.y + top / 2 + y * scale);
+  };
+
+  await test.step("two clicks, two pixels off, bring both slopes back", async () => {
+    const started = Date.now();
+    await draw.click();
+    await page.getByRole("button", { name: photograph, exact: true }).click();
+    const [from, to] = [pixelOf(view, gable as Place), pixelOf(view, inner as Place)];
+    await click({ x: from.x + 1.4, y: from.y - 1.4 });
+    await expect(panel.getByText("Click the other end in the same photograph.")).toBeVisible();
+    await click({ x: to.x - 1.4, y: to.y + 1.4 });
+    await expect(done).toHaveCount(2);
+    await settled(page);
+    expect(Date.now() - started).toBeLessThan(30_000);
+    await expect(done.last()).toContainText(`Edge drawn in ${photograph}`);
+    const found = await roofOf(page);
+    expect(found).toHaveLength(truth.length);
+    expect(offBy(found, truth)).toBeLessThan(0.25);
+    for (const face of [west, east]) {
+      const slopes = found.filter(({ azimuthDeg }) => Math.abs(azimuthDeg - face.azimuthDeg) < 5);
+      expect(Math.min(...slopes.map((f) => Math.abs(f.slopeDeg - face.slopeDeg)))).toBeLessThan(2);
+    }
+  });
+
+  await test.step("it is undone and done again; an edge over the lawn says why it is none", async () => {
+    await panel.getByRole("button", { name: "Undo" }).click();
+    await settled(page);
+    expect(await roofOf(page)).toEqual(wrong);
+    await panel.getByRole("button", { name: "Redo" }).click();
+    await settled(page);
+    expect(await roofOf(page)).toHaveLength(truth.length);
+    await draw.click();
+    await canvas.focus();
+    await page.keyboard.press("Escape");
+    await expect(draw).toHaveAttribute("aria-pressed", "false");
+    await draw.click();
+    await click({ x: 3, y: 3 });
+    await click({ x: 40, y: 3 });
+    await expect(
+      panel.getByText(/Not applied: (no building stands there|too few other photographs)/),
+    ).toBeVisible();
+  });
+  expect(problems).toEqual([]);
+});

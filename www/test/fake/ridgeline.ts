@@ -267,7 +267,7 @@ export class Session implements CoreSession {
   }
 
   corrected() {
-    return { outcomes: [], sources: FACETS.map((_, i) => i) };
+    return { outcomes: [], lines: [], sources: FACETS.map((_, i) => i) };
   }
 
   image() {

@@ -7,6 +7,7 @@ import { counted } from "../parts/counted";
 import { saveFile } from "../parts/saveFile";
 import { TextField } from "../parts/TextField";
 import { isBusy } from "../state/activity";
+import type { Tab } from "../state/methods";
 import { notify } from "../state/notices";
 import { mainResults } from "../state/results";
 import { scene } from "../state/scene";
@@ -14,6 +15,7 @@ import { select, selection, tab } from "../state/viewState";
 import { correctionWords, NOT_APPLIED_WORDS } from "./correctionWords";
 import { doubtfulFacets, nextDoubtful } from "./doubtful";
 import { drawn, forgetDrawn, isCorrecting, showCorrecting } from "./drawn";
+import { drawEdge, edgeStart, isDrawingEdge } from "./edgeDrawing";
 import {
   type Ends,
   edgesOf,
@@ -33,6 +35,9 @@ interface Armed {
 }
 const armed = signal<Armed | null>(null);
 
+/** The tabs in which the model is corrected: edges are drawn in the photographs. */
+const SHOWN_IN: readonly Tab[] = ["model", "facets", "images"];
+
 export function Corrections() {
   const { facets } = mainResults.value;
   useSignalEffect(takeSecond);
@@ -43,7 +48,7 @@ export function Corrections() {
     window.addEventListener("keydown", onKeyDown);
     return () => window.removeEventListener("keydown", onKeyDown);
   });
-  if (facets === null || !(tab.value === "model" || tab.value === "facets")) {
+  if (facets === null || !SHOWN_IN.includes(tab.value)) {
     return null;
   }
   const doubtful = doubtfulFacets(facets).length;
@@ -69,9 +74,35 @@ export function Corrections() {
           </span>
         </div>
         <SelectedFacet facets={facets} />
+        <EdgeTool />
         <Done />
       </details>
     </section>
+  );
+}
+
+/** An edge is drawn by its two ends in one photograph. */
+function EdgeTool() {
+  return (
+    <>
+      <div class="row wrap">
+        <button
+          type="button"
+          aria-pressed={isDrawingEdge.value}
+          disabled={isBusy.value}
+          onClick={() => drawEdge(!isDrawingEdge.value)}
+        >
+          Draw an edge in a photograph
+        </button>
+      </div>
+      {isDrawingEdge.value && (
+        <p role="status">
+          {edgeStart.value === null
+            ? "Click one end of the edge in a photograph. By keyboard: arrows move it below the cross in its middle, Enter takes that place, Escape ends the tool."
+            : "Click the other end in the same photograph."}
+        </p>
+      )}
+    </>
   );
 }
 

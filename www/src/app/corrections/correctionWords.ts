@@ -15,6 +15,7 @@ const KINDS: Record<Correction["correction"], string> = {
   set_eave: "Eave set",
   merge: "Facets merged",
   split: "Facet divided",
+  add_edge: "Edge drawn",
   add_facet: "Facet added",
   mirror: "Counterpart added",
 };
@@ -28,6 +29,8 @@ export function correctionWords(one: Correction): string {
     case "set_ground":
     case "set_eave":
       return `${words}: ${one.height.toFixed(2)} m`;
+    case "add_edge":
+      return `${words} in ${one.photograph}`;
     case "move_corner":
       return `${words} by ${lengthText(one.from, one.to)}`;
     case "move_edge":
@@ -51,6 +54,9 @@ export const NOT_APPLIED_WORDS: Record<NotApplied, string> = {
   not_neighbours: "the two are no neighbours in one building",
   not_divided: "the line does not divide the facet",
   no_room: "its place is taken, or its outline encloses no roof",
+  no_photograph: "no photograph has that name",
+  not_in_photograph: "the two points are no edge in the photograph",
+  no_line: "too few other photographs show an edge there",
   implausible: "no roof has such numbers",
   not_adjusted: "the building cannot be adjusted to it",
   would_not_close: "the building would not close",

@@ -34,6 +34,8 @@ interface Props {
   /** See `Figure`. */
   inText: boolean;
   onPick: (selection: Selection | null) => void;
+  /** Takes places instead, pixels of the image; null ends that. */
+  onPlace?: ((at: Vec2 | null) => void) | undefined;
 }
 
 const ZOOM_STEP = 1.25;
@@ -52,6 +54,7 @@ export function ImageCanvas({
   follows,
   inText,
   onPick,
+  onPlace,
 }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   void textScale.value;
@@ -92,8 +95,13 @@ export function ImageCanvas({
   };
   // The watch outlives this drawing: a finger that rests is told of later.
   pick.current = ({ x, y, isTouch }) => {
+    const at = toImage(viewport, { x, y });
+    if (onPlace !== undefined) {
+      onPlace([at.x, at.y]);
+      return;
+    }
     const reach = (isTouch ? TOUCH_REACH_PX : PICK_REACH_PX) / viewport.scale;
-    onPick(pickAt(overlay, view, toImage(viewport, { x, y }), reach));
+    onPick(pickAt(overlay, view, at, reach));
   };
   const onPointerDown = (event: PointerEvent) => {
     canvas.current?.setPointerCapture(event.pointerId);
@@ -124,8 +132,11 @@ export function ImageCanvas({
     if (next !== undefined) {
       event.preventDefault();
       setMoved(next);
+    } else if (event.key === "Enter" && onPlace !== undefined) {
+      const { x, y } = toImage(viewport, { x: box.width / 2, y: box.height / 2 });
+      onPlace([x, y]);
     } else if (event.key === "Escape") {
-      onPick(null);
+      (onPlace ?? onPick)(null);
     }
   };
 
@@ -135,7 +146,11 @@ export function ImageCanvas({
         ref={canvas}
         tabIndex={0}
         role="img"
-        aria-label={`${name}: drag to move, scroll to zoom, click a line to pick it`}
+        aria-label={
+          onPlace === undefined
+            ? `${name}: drag to move, scroll to zoom, click a line to pick it`
+            : `${name}: drag to move, scroll to zoom, click an end of the edge; Enter takes the place in the middle`
+        }
         onWheel={onWheel}
         onPointerDown={onPointerDown}
         onPointerMove={onPointerMove}
@@ -148,6 +163,7 @@ export function ImageCanvas({
         onDblClick={() => setMoved(null)}
         onKeyDown={onKeyDown}
       />
+      {onPlace !== undefined && <span class="aim" aria-hidden="true" />}
       <figcaption class="numbers">
         {name} · {Math.round(100 * viewport.scale)} %
       </figcaption>

@@ -2,15 +2,30 @@
 import "./images.css";
 import type { ComponentChildren } from "preact";
 import type { Figure } from "../../shared/figure";
+import type { Vec2 } from "../../shared/records";
 import { Legend } from "../parts/Legend";
 import { followsSelection, showRejected, tab, withRejected, zoomToSelection } from "../state/viewState";
 import { ImageCanvas } from "./ImageCanvas";
 import { overlayOf } from "./overlays";
-import { marksOf } from "./selectionMarks";
+import { type Mark, marksOf } from "./selectionMarks";
 import { ALL_VIEWS, ViewPicker } from "./ViewPicker";
 
-/** `empty` stands in their place as long as there are none. */
-export function ImageViews({ figure, empty }: { figure: Figure; empty: ComponentChildren }) {
+/** Something that is drawn in the views by clicks. */
+export interface PlaceTool {
+  /** Takes a place of a view, pixels; null ends the tool. Undefined: clicks pick. */
+  onPlace?: ((view: number, at: Vec2 | null) => void) | undefined;
+  /** What it shows in a view. */
+  marks: (view: number) => readonly Mark[];
+}
+
+interface Props {
+  figure: Figure;
+  /** Stands in their place as long as there are none. */
+  empty: ComponentChildren;
+  tool?: PlaceTool | undefined;
+}
+
+export function ImageViews({ figure, empty, tool }: Props) {
   const { scene, images, selection, view: asked, act } = figure;
   const views = scene?.views ?? [];
   if (views.length === 0 || images.length === 0) {
@@ -35,10 +50,11 @@ export function ImageViews({ figure, empty }: { figure: Figure; empty: Component
             image={images[view] as ImageBitmap}
             overlay={overlayOf(tab.value, view, figure, withRejected.value)}
             selection={selection}
-            marks={marksOf(selection, view, figure)}
+            marks={[...marksOf(selection, view, figure), ...(tool?.marks(view) ?? [])]}
             follows={followsSelection.value && shown.length > 1}
             inText={figure.inText}
             onPick={act.select}
+            onPlace={tool?.onPlace && ((at) => tool.onPlace?.(view, at))}
           />
         ))}
       </div>

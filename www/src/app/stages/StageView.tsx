@@ -3,6 +3,7 @@ import "./stages.css";
 import type { ComponentType } from "preact";
 import { useRef } from "preact/hooks";
 import type { Figure } from "../../shared/figure";
+import { isCorrecting } from "../corrections/drawn";
 import { AdjacencyLab } from "../figures/AdjacencyLab";
 import { ClusterLab } from "../figures/ClusterLab";
 import { CoplanarLab } from "../figures/CoplanarLab";
@@ -24,6 +25,7 @@ import { method } from "../state/parameters";
 import { images } from "../state/scene";
 import { showTab, tab } from "../state/viewState";
 import { EmptyStage } from "./EmptyStage";
+import { edgeTool } from "./edgeTool";
 
 const TITLES: Record<Tab, string> = {
   images: "Images",
@@ -66,7 +68,9 @@ const LABS: Partial<Record<Tab, ComponentType<{ figure: Figure }>>> = {
 
 /** Drawn anew with whatever of the page's state changes; the tabs and the space are not. */
 function PageImages() {
-  return <ImageViews figure={pageFigure()} empty={<EmptyStage />} />;
+  const figure = pageFigure();
+  const tool = tab.value === "images" && isCorrecting.value ? edgeTool(figure) : undefined;
+  return <ImageViews figure={figure} empty={<EmptyStage />} tool={tool} />;
 }
 
 function PageLab({ Lab }: { Lab: ComponentType<{ figure: Figure }> }) {

@@ -1,0 +1,75 @@
+//! The line of an edge that somebody draws in one view (B99 3.1, 3.4, from the second look on).
+//!
+//! ```text
+//! hand    the drawn edge, moved to the edge that the view shows there
+//! beam    its epipolar beam: the candidates for the line, by the steps that the other views show
+//!    -> complete_from_edges    measured in every view, fitted and weighed as every other line
+//! ```
+//!
+//! The likeliest of the fitted candidates is the line. No view needs a detected segment: that the
+//! detector missed the edge is why it is drawn.
+
+mod beam;
+mod hand;
+#[cfg(test)]
+mod tests;
+
+use super::nview::{CompletedLine, complete_from_edges};
+use crate::geometry::Segment2;
+use crate::ids::ViewId;
+use crate::lines3d::{Line3d, LineOrigin, ProjectedLine};
+use crate::params::{Lines3dParams, MatchParams};
+use crate::scene::Scene;
+
+/// The line, between heights in metres, of an edge drawn in a view from one pixel to another; its
+/// ends are those that were drawn. `None` where fewer than two other views show an edge along a
+/// line that the views together determine.
+pub fn line_of_drawn(
+    scene: &Scene,
+    view: ViewId,
+    drawn: &Segment2,
+    z_range: [f64; 2],
+    (params, fitting): (&MatchParams, &Lines3dParams),
+) -> Option<Line3d> {
+    let own = hand::own_edge(view, scene.view(view), drawn);
+    let snapped = hand::between(&own.segment, drawn);
+    let starts = beam::candidates(scene, view, &snapped, z_range, params.max_slope_deg);
+    let fitted = crate::execution::map(&starts, |_, start| {
+        complete_from_edges(scene, start, &own, z_range, (params, fitting))
+    });
+    let nats = |line: &CompletedLine| line.evidence.nats();
+    // The first of the best, which the steps made likelier.
+    let best =
+        fitted
+            .into_iter()
+            .flatten()
+            .reduce(|best, other| match nats(&other) > nats(&best) {
+                true => other,
+                false => best,
+            })?;
+    line_between(scene, view, &snapped, best)
+}
+
+/// The line with the ends that were drawn.
+fn line_between(
+    scene: &Scene,
+    view: ViewId,
+    drawn: &Segment2,
+    found: CompletedLine,
+) -> Option<Line3d> {
+    let fit = &found.fit;
+    let image = ProjectedLine::new(scene.camera(view), &fit.line)?;
+    let ends = [image.t_of(&drawn.p0), image.t_of(&drawn.p1)];
+    let segment = fit.line.stretch(ends[0], ends[1]);
+    let shares = ends.map(|t| t / fit.line.length());
+    let [first, last] = shares.map(|share| fit.sigma_at(share));
+    Some(Line3d {
+        origin: LineOrigin::Matched,
+        segment,
+        sigma_m: first.max(last),
+        covariance: shares.map(|share| fit.covariance_at(share)),
+        probability: found.evidence.probability(),
+        supports: found.supports,
+        contradiction: None,
+    })
+}

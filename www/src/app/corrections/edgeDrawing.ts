@@ -1,0 +1,46 @@
+/** An edge that is missing in the model, drawn by its two ends in one photograph; the core finds its line in the others. */
+import { type ReadonlySignal, signal } from "@preact/signals";
+import type { Vec2 } from "../../shared/records";
+import { scene } from "../state/scene";
+import { showTab } from "../state/viewState";
+import { showCorrecting } from "./drawn";
+import { correct } from "./history";
+
+/** A place in a photograph, pixels of the view. */
+export interface Pixel {
+  view: number;
+  at: Vec2;
+}
+
+const drawing = signal(false);
+/** Whether clicks in the photographs are the ends of an edge. */
+export const isDrawingEdge: ReadonlySignal<boolean> = drawing;
+
+const start = signal<Pixel | null>(null);
+/** The first end, once it is clicked. */
+export const edgeStart: ReadonlySignal<Pixel | null> = start;
+
+/** Begins an edge in the photographs, or leaves it. */
+export function drawEdge(draws: boolean): void {
+  drawing.value = draws;
+  start.value = null;
+  if (draws) {
+    showCorrecting(true);
+    showTab("images");
+  }
+}
+
+/** Takes a clicked end; both ends lie in one photograph, so a click in another one begins anew. */
+export async function takeEdgeEnd(view: number, at: Vec2): Promise<void> {
+  const first = start.value;
+  const photograph = scene.peek()?.views[view]?.name;
+  if (!drawing.value || photograph === undefined) {
+    return;
+  }
+  if (first === null || first.view !== view) {
+    start.value = { view, at };
+    return;
+  }
+  drawEdge(false);
+  await correct({ correction: "add_edge", photograph, pixels: [first.at, at] });
+}
