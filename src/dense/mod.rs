@@ -7,8 +7,10 @@
 //! region        patches in one plane, joined
 //! segmentation  the planes compete for the patches
 //! surface_class building, ground or vegetation
+//! cloud         a point cloud against the patches, and the planes in it
 //! ```
 
+mod cloud;
 mod patch;
 mod patch_match;
 mod region;
@@ -16,8 +18,11 @@ mod segmentation;
 mod surface_class;
 mod sweep;
 
+pub use cloud::{CloudComparison, CloudPlane, CloudVerdict};
 pub use patch::Patch;
 pub use surface_class::{SurfaceClass, SurfaceEvidence};
+
+use self::cloud::{Matched, compare};
 
 use nalgebra::{Point2, Point3, Vector2};
 use serde::{Deserialize, Serialize};
@@ -27,6 +32,7 @@ use crate::execution::Sharded;
 use crate::geometry::{Plane, bounds};
 use crate::ids::ProposalOrigin;
 use crate::lines3d::Line3d;
+use crate::params::PointCloudParams;
 use crate::photoconsistency::{PlanGrid, WindowMatcher};
 use crate::planes::ProposedPlane;
 use crate::scene::Scene;
@@ -80,6 +86,10 @@ pub struct DenseTrace {
     pub classes: Vec<SurfaceEvidence>,
     /// Distance of neighbouring patches, metres.
     pub spacing_m: f64,
+    /// A point cloud that is known, compared with the patches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(target_arch = "wasm32", tsify(optional))]
+    pub point_cloud: Option<CloudComparison>,
 }
 
 impl DenseTrace {
@@ -102,6 +112,7 @@ pub fn dense_planes(
     scene: &Scene,
     lines: &[Line3d],
     ground: &Ground,
+    params: &PointCloudParams,
 ) -> Sharded<(Vec<DensePlane>, DenseTrace)> {
     let Some(extent) = extent(lines) else {
         return Ok(Default::default());
@@ -127,6 +138,17 @@ pub fn dense_planes(
     let classes = crate::execution::map(&regions, |_, region| {
         surface_class::weigh(region, &found, scene, ground, z_per_pixel)
     });
+    let cloud = scene.known.point_cloud.as_ref().filter(|_| params.enabled);
+    let point_cloud = cloud.map(|cloud| {
+        let matched = Matched {
+            found: &found,
+            regions: &regions,
+            classes: &classes,
+            ground,
+            z_per_pixel,
+        };
+        compare(cloud, &matched, params)
+    });
     let planes = regions.into_iter().zip(&classes).map(|(region, evidence)| {
         let middles = (region.cells.iter()).filter_map(|&k| found.patches[k].map(|p| p.middle));
         let middles: Vec<Point2<f64>> = middles.collect();
@@ -148,6 +170,7 @@ pub fn dense_planes(
         patches: found.patches.into_iter().flatten().collect(),
         classes,
         spacing_m: grid.step,
+        point_cloud,
     };
     Ok((planes, trace))
 }
@@ -235,7 +258,13 @@ mod tests {
             Point3::new(7.0, 0.0, RIDGE_Z),
         );
         let kerb = line(Point3::new(-7.0, -8.0, 0.0), Point3::new(7.0, 8.0, 0.0));
-        dense_planes(&views, &[ridge, kerb], &Ground::level(0.0)).unwrap()
+        dense_planes(
+            &views,
+            &[ridge, kerb],
+            &Ground::level(0.0),
+            &PointCloudParams::default(),
+        )
+        .unwrap()
     }
 
     #[test]
@@ -291,7 +320,13 @@ mod tests {
 
     #[test]
     fn nothing_is_sought_without_lines() {
-        let (planes, trace) = dense_planes(&scene(&[]), &[], &Ground::level(0.0)).unwrap();
+        let (planes, trace) = dense_planes(
+            &scene(&[]),
+            &[],
+            &Ground::level(0.0),
+            &PointCloudParams::default(),
+        )
+        .unwrap();
         assert!(planes.is_empty() && trace.patches.is_empty());
     }
 }
