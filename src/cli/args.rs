@@ -100,9 +100,9 @@ pub(super) struct InputArgs {
     /// Standard deviation of the footprints' borders, metres (0.5 if not given).
     #[arg(long, value_name = "M", value_parser = parse_positive, requires = "footprints")]
     pub footprint_accuracy: Option<f64>,
-    /// Point cloud (LAS, LAZ) in the frame of the orientation: its points on roofs are evidence that
-    /// clear images overrule, and its ground is the terrain where none is given. A cloud that lies
-    /// elsewhere or higher is moved to what the images show, and named.
+    /// Point cloud (LAS, LAZ) in the frame of the orientation: its points on roofs are evidence
+    /// that clear images overrule, and its ground is the terrain where none is given. A cloud that
+    /// lies elsewhere or higher is moved to what the images show, and named.
     #[arg(long, value_name = "FILE")]
     pub point_cloud: Option<PathBuf>,
     /// Standard deviation of the cloud's heights, metres (0.15 if not given).

@@ -22,7 +22,7 @@
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::least_rectangle;
+use super::least_rectangle::least_rectangle;
 use super::patch::{Patch, gradient_of};
 use super::patch_match::PatchGrid;
 use super::region::{Region, grow_regions};
@@ -350,7 +350,7 @@ fn agreement(
         };
         let cell = row * grid.width + column;
         highest[cell] = larger(highest[cell], p.z - matched.ground.z_at(&p.xy()));
-        if let Some(patch) = &matched.found.patches[cell] {
+        if let Some(patch) = matched.found.patches[cell].as_ref().filter(|p| agreed(p)) {
             nearest[cell] = smaller(nearest[cell], (p.z - patch.z_at(&p.xy())).abs());
         }
     }

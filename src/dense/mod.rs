@@ -5,12 +5,14 @@
 //! patch         a small piece of a surface
 //! patch_match   slanted patches by PatchMatch, all views at once
 //! region        patches in one plane, joined
+//! least_rectangle   around a region
 //! segmentation  the planes compete for the patches
 //! surface_class building, ground or vegetation
 //! cloud         a point cloud against the patches, and the planes in it
 //! ```
 
 mod cloud;
+mod least_rectangle;
 mod patch;
 mod patch_match;
 mod region;
@@ -23,8 +25,9 @@ pub use patch::Patch;
 pub use surface_class::{SurfaceClass, SurfaceEvidence};
 
 use self::cloud::{Matched, compare};
+use self::least_rectangle::least_rectangle;
 
-use nalgebra::{Point2, Point3, Vector2};
+use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::JudgedSurface;
@@ -201,44 +204,12 @@ fn height_by_base(scene: &Scene, middle: &Point3<f64>) -> f64 {
     1.0 / bases.fold(0.05, f64::max)
 }
 
-/// The least rectangle in plan around some points and a margin, one side along the contour lines
-/// of a plane or along x.
-fn least_rectangle(points: &[Point2<f64>], margin: f64, plane: &Plane) -> [Point2<f64>; 4] {
-    let directions = (0..18).map(|i| {
-        let (s, c) = crate::math::sin_cos(f64::from(i) * std::f64::consts::PI / 36.0);
-        Vector2::new(c, s)
-    });
-    let level = Vector2::new(-plane.normal.y, plane.normal.x).try_normalize(0.05);
-    let boxes = directions.chain(level).map(|along| {
-        let across = Vector2::new(-along.y, along.x);
-        let [low, high] = bounds(
-            points
-                .iter()
-                .map(|p| Point2::new(p.coords.dot(&along), p.coords.dot(&across))),
-        );
-        let (low, high) = (
-            low.coords.add_scalar(-margin),
-            high.coords.add_scalar(margin),
-        );
-        let at = |t: f64, u: f64| Point2::from(along * t + across * u);
-        let corners = [
-            at(low.x, low.y),
-            at(high.x, low.y),
-            at(high.x, high.y),
-            at(low.x, high.y),
-        ];
-        ((high - low).product(), corners)
-    });
-    let least = boxes.min_by(|a, b| a.0.total_cmp(&b.0));
-    least.expect("there are directions").1
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::planes::rendered_planes::{RIDGE_Z, level_ground, scene, slope_from, textured};
     use crate::testing::line;
-    use nalgebra::Vector3;
+    use nalgebra::{Vector2, Vector3};
 
     fn slope(to_the_north: f64) -> Plane {
         slope_from([0.0, 0.0], [0.0, to_the_north])

@@ -13,8 +13,8 @@
 //! independent of each other count for a square metre: at most 3 nats, where clear images say five.
 //!
 //! With the probability w that the cloud belongs here every ratio becomes w L + (1 - w). A facet as
-//! a whole may be newer or older than the cloud, by the share e of what is outdated; then the points
-//! are as likely as by the better of both,
+//! a whole may be newer or older than the cloud, by the share e of what is outdated; then the
+//! points are as likely as by the better of both,
 //!
 //! ```text
 //! L' = ((1 - e) L + e max(L, 1)) / ((1 - e) + e max(L, 1))

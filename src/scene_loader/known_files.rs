@@ -1,4 +1,5 @@
-//! Terrain, footprints and point clouds among the files: those that the options name, else the only ones.
+//! Terrain, footprints and point clouds among the files: those that the options name, else the only
+//! ones.
 
 use nalgebra::Vector3;
 
@@ -63,7 +64,11 @@ pub(super) fn read_known(
         &mut warnings,
     )?;
     let is_cloud = |file: &&InputFile| file.bytes.starts_with(POINT_CLOUD);
-    let clouds: Vec<&InputFile> = terrains.iter().copied().filter(is_cloud).collect();
+    let clouds: Vec<&InputFile> = match (&options.terrain, terrain) {
+        // The cloud that is named as the terrain is the one that is meant.
+        (Some(_), Some(file)) if is_cloud(&file) => vec![file],
+        _ => terrains.iter().copied().filter(is_cloud).collect(),
+    };
     let cloud = match (&options.point_cloud, &clouds[..]) {
         // What is to be said of several has been said of them as terrain.
         (None, [_, _, ..]) => None,

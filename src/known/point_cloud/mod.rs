@@ -9,8 +9,8 @@
 //! ```
 //!
 //! LAS 1.0 to 1.4 (ASPRS), point formats 0 to 10. Without points that are classified as ground a
-//! cloud is refused as terrain: the lowest points of a cell are those of a roof where it is wider than the
-//! cell.
+//! cloud is refused as terrain: the lowest points of a cell are those of a roof where it is wider
+//! than the cell.
 
 mod compressed;
 mod ground;
