@@ -12,9 +12,9 @@
 //! ground where no roof is, and R the range of heights of all others. So many points as are
 //! independent of each other count for a square metre: at most 3 nats, where clear images say five.
 //!
-//! With the probability w that the cloud belongs here every ratio becomes w L + (1 - w). A facet as
-//! a whole may be newer or older than the cloud, by the share e of what is outdated; then the
-//! points are as likely as by the better of both,
+//! With the probability w that the cloud belongs here every ratio becomes w L + (1 - w). A plane
+//! as a whole may be no roof, or none any more, by the share e of those in error; then the points
+//! are as likely as by the better of both,
 //!
 //! ```text
 //! L' = ((1 - e) L + e max(L, 1)) / ((1 - e) + e max(L, 1))
@@ -140,7 +140,7 @@ impl<'a> CloudEvidence<'a> {
                 on_it += if ratio > 1.0 { 1.0 } else { 0.0 };
             }
         }
-        let e = self.cloud.params.outdated;
+        let e = self.cloud.params.in_error;
         // Beyond that both ratios are at their bounds.
         let ratio = exp(nats.clamp(-MOST_NATS, MOST_NATS));
         let older = e * larger(ratio, 1.0);

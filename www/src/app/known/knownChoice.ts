@@ -21,7 +21,9 @@ function takenWords(path: string, kind: KnownKind, known: SceneInfo["known"] | n
   if (!isCloud) {
     return TAKEN[kind];
   }
-  return known?.terrain === path ? "taken as the terrain, and for its points on roofs" : "taken for its points on roofs";
+  return known?.terrain === path
+    ? "taken as the terrain, and for its points on roofs"
+    : "taken for its points on roofs";
 }
 
 /** What is known beforehand, in the order of the files; `known` are the files that the loaded scene has taken. */

@@ -1,5 +1,11 @@
 /** What the images say of what is known beforehand, in words. */
-import type { CloudComparison, FootprintVerdict, RegisterTrace, TerrainComparison, Vec2 } from "../../shared/records";
+import type {
+  CloudComparison,
+  FootprintVerdict,
+  RegisterTrace,
+  TerrainComparison,
+  Vec2,
+} from "../../shared/records";
 import { percentText } from "./numberText";
 
 /** Of a single footprint. */
