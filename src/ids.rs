@@ -51,4 +51,6 @@ pub enum ProposalOrigin {
     CoplanarSet(u32),
     /// A plane of corners: index into the list of [`crate::adjacency::CornerPlane`].
     CornerPlane(u32),
+    /// A plane of a point cloud: index into the list of [`crate::dense::CloudComparison`].
+    CloudPlane(u32),
 }

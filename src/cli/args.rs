@@ -100,6 +100,14 @@ pub(super) struct InputArgs {
     /// Standard deviation of the footprints' borders, metres (0.5 if not given).
     #[arg(long, value_name = "M", value_parser = parse_positive, requires = "footprints")]
     pub footprint_accuracy: Option<f64>,
+    /// Point cloud (LAS, LAZ) in the frame of the orientation: its points on roofs are evidence
+    /// that clear images overrule, and its ground is the terrain where none is given. A cloud that
+    /// lies elsewhere or higher is moved to what the images show, and named.
+    #[arg(long, value_name = "FILE")]
+    pub point_cloud: Option<PathBuf>,
+    /// Standard deviation of the cloud's heights, metres (0.15 if not given).
+    #[arg(long, value_name = "M", value_parser = parse_positive, requires = "point_cloud")]
+    pub point_cloud_accuracy: Option<f64>,
     /// Number of threads; by default one per core. It never changes the result.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

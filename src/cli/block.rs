@@ -8,7 +8,7 @@ use std::time::Instant;
 use ridgeline::execution::progress::silent;
 use ridgeline::tiles::{BlockPlan, BlockSource};
 
-use super::args::{JoinArgs, PlanArgs, TileArgs};
+use super::args::{InputArgs, JoinArgs, PlanArgs, TileArgs};
 use super::failure::Failure;
 use super::files;
 use super::input::{self, OpenedScene, ReadFiles, refusal};
@@ -26,8 +26,13 @@ pub(super) fn plan(args: &PlanArgs) -> Result<(), Failure> {
     if let Some(method) = args.method {
         params.method = method.into();
     }
-    let known = [&args.input.terrain, &args.input.footprints];
-    let known = known.into_iter().flatten();
+    let InputArgs {
+        terrain,
+        footprints,
+        point_cloud,
+        ..
+    } = &args.input;
+    let known = [terrain, footprints, point_cloud].into_iter().flatten();
     let source = BlockSource {
         scene: args.input.scene.to_string_lossy().into_owned(),
         orientation: args.input.orientation.clone(),

@@ -47,6 +47,7 @@ pub(super) fn open(
     };
     let terrain = known(&mut files, &args.terrain)?;
     let footprints = known(&mut files, &args.footprints)?;
+    let point_cloud = known(&mut files, &args.point_cloud)?;
     let options = LoadOptions {
         orientation: beside
             .or_else(|| Some(below(&args.scene, args.orientation.as_deref()?)))
@@ -60,6 +61,8 @@ pub(super) fn open(
         terrain_accuracy_m: args.terrain_accuracy.or(stated.terrain_accuracy_m),
         footprints: footprints.or(stated.footprints),
         footprint_accuracy_m: args.footprint_accuracy.or(stated.footprint_accuracy_m),
+        point_cloud: point_cloud.or(stated.point_cloud),
+        point_cloud_accuracy_m: args.point_cloud_accuracy.or(stated.point_cloud_accuracy_m),
         unused: stated.unused,
         epsg: args.crs.or(stated.epsg),
         memory_mb: args.memory.or(stated.memory_mb),

@@ -5,10 +5,14 @@
 //! patch         a small piece of a surface
 //! patch_match   slanted patches by PatchMatch, all views at once
 //! region        patches in one plane, joined
+//! least_rectangle   around a region
 //! segmentation  the planes compete for the patches
 //! surface_class building, ground or vegetation
+//! cloud         a point cloud against the patches, and the planes in it
 //! ```
 
+mod cloud;
+mod least_rectangle;
 mod patch;
 mod patch_match;
 mod region;
@@ -16,10 +20,14 @@ mod segmentation;
 mod surface_class;
 mod sweep;
 
+pub use cloud::{CloudComparison, CloudPlane, CloudVerdict};
 pub use patch::Patch;
 pub use surface_class::{SurfaceClass, SurfaceEvidence};
 
-use nalgebra::{Point2, Point3, Vector2};
+use self::cloud::{Matched, compare};
+use self::least_rectangle::least_rectangle;
+
+use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::JudgedSurface;
@@ -27,6 +35,7 @@ use crate::execution::Sharded;
 use crate::geometry::{Plane, bounds};
 use crate::ids::ProposalOrigin;
 use crate::lines3d::Line3d;
+use crate::params::PointCloudParams;
 use crate::photoconsistency::{PlanGrid, WindowMatcher};
 use crate::planes::ProposedPlane;
 use crate::scene::Scene;
@@ -80,6 +89,10 @@ pub struct DenseTrace {
     pub classes: Vec<SurfaceEvidence>,
     /// Distance of neighbouring patches, metres.
     pub spacing_m: f64,
+    /// A point cloud that is known, compared with the patches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(target_arch = "wasm32", tsify(optional))]
+    pub point_cloud: Option<CloudComparison>,
 }
 
 impl DenseTrace {
@@ -102,6 +115,7 @@ pub fn dense_planes(
     scene: &Scene,
     lines: &[Line3d],
     ground: &Ground,
+    params: &PointCloudParams,
 ) -> Sharded<(Vec<DensePlane>, DenseTrace)> {
     let Some(extent) = extent(lines) else {
         return Ok(Default::default());
@@ -127,6 +141,17 @@ pub fn dense_planes(
     let classes = crate::execution::map(&regions, |_, region| {
         surface_class::weigh(region, &found, scene, ground, z_per_pixel)
     });
+    let cloud = scene.known.point_cloud.as_ref().filter(|_| params.enabled);
+    let point_cloud = cloud.map(|cloud| {
+        let matched = Matched {
+            found: &found,
+            regions: &regions,
+            classes: &classes,
+            ground,
+            z_per_pixel,
+        };
+        compare(cloud, &matched, params)
+    });
     let planes = regions.into_iter().zip(&classes).map(|(region, evidence)| {
         let middles = (region.cells.iter()).filter_map(|&k| found.patches[k].map(|p| p.middle));
         let middles: Vec<Point2<f64>> = middles.collect();
@@ -148,6 +173,7 @@ pub fn dense_planes(
         patches: found.patches.into_iter().flatten().collect(),
         classes,
         spacing_m: grid.step,
+        point_cloud,
     };
     Ok((planes, trace))
 }
@@ -178,44 +204,12 @@ fn height_by_base(scene: &Scene, middle: &Point3<f64>) -> f64 {
     1.0 / bases.fold(0.05, f64::max)
 }
 
-/// The least rectangle in plan around some points and a margin, one side along the contour lines
-/// of a plane or along x.
-fn least_rectangle(points: &[Point2<f64>], margin: f64, plane: &Plane) -> [Point2<f64>; 4] {
-    let directions = (0..18).map(|i| {
-        let (s, c) = crate::math::sin_cos(f64::from(i) * std::f64::consts::PI / 36.0);
-        Vector2::new(c, s)
-    });
-    let level = Vector2::new(-plane.normal.y, plane.normal.x).try_normalize(0.05);
-    let boxes = directions.chain(level).map(|along| {
-        let across = Vector2::new(-along.y, along.x);
-        let [low, high] = bounds(
-            points
-                .iter()
-                .map(|p| Point2::new(p.coords.dot(&along), p.coords.dot(&across))),
-        );
-        let (low, high) = (
-            low.coords.add_scalar(-margin),
-            high.coords.add_scalar(margin),
-        );
-        let at = |t: f64, u: f64| Point2::from(along * t + across * u);
-        let corners = [
-            at(low.x, low.y),
-            at(high.x, low.y),
-            at(high.x, high.y),
-            at(low.x, high.y),
-        ];
-        ((high - low).product(), corners)
-    });
-    let least = boxes.min_by(|a, b| a.0.total_cmp(&b.0));
-    least.expect("there are directions").1
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::planes::rendered_planes::{RIDGE_Z, level_ground, scene, slope_from, textured};
     use crate::testing::line;
-    use nalgebra::Vector3;
+    use nalgebra::{Vector2, Vector3};
 
     fn slope(to_the_north: f64) -> Plane {
         slope_from([0.0, 0.0], [0.0, to_the_north])
@@ -235,7 +229,13 @@ mod tests {
             Point3::new(7.0, 0.0, RIDGE_Z),
         );
         let kerb = line(Point3::new(-7.0, -8.0, 0.0), Point3::new(7.0, 8.0, 0.0));
-        dense_planes(&views, &[ridge, kerb], &Ground::level(0.0)).unwrap()
+        dense_planes(
+            &views,
+            &[ridge, kerb],
+            &Ground::level(0.0),
+            &PointCloudParams::default(),
+        )
+        .unwrap()
     }
 
     #[test]
@@ -291,7 +291,13 @@ mod tests {
 
     #[test]
     fn nothing_is_sought_without_lines() {
-        let (planes, trace) = dense_planes(&scene(&[]), &[], &Ground::level(0.0)).unwrap();
+        let (planes, trace) = dense_planes(
+            &scene(&[]),
+            &[],
+            &Ground::level(0.0),
+            &PointCloudParams::default(),
+        )
+        .unwrap();
         assert!(planes.is_empty() && trace.patches.is_empty());
     }
 }

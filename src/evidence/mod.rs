@@ -74,6 +74,9 @@ impl<'de> Deserialize<'de> for EvidenceTerm {
 /// scenes without one.
 pub(crate) const INSIDE_FOOTPRINT: &str = "inside_footprint";
 
+/// What a point cloud says of a facet.
+pub(crate) const POINT_CLOUD: &str = "on_point_cloud";
+
 /// All that speaks for a candidate and against it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
@@ -162,8 +165,9 @@ impl EvidenceModel {
 
     /// The name of a feature as the tables have it.
     fn feature_called(name: &str) -> Option<&'static str> {
-        if name == INSIDE_FOOTPRINT {
-            return Some(INSIDE_FOOTPRINT);
+        let known = [INSIDE_FOOTPRINT, POINT_CLOUD];
+        if let Some(known) = known.into_iter().find(|known| *known == name) {
+            return Some(known);
         }
         let models = [
             Self::of_lines(),

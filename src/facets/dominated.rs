@@ -5,6 +5,7 @@
 //! cells. A plane has to pay for itself, as a label costs in the energies of multi-model fitting
 //! (Isack and Boykov 2012).
 
+use super::point_cloud::{CloudEvidence, OfPlane};
 use crate::math::larger;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid, ShiftableWindows};
 use crate::planes::PlaneHypothesis;
@@ -21,10 +22,12 @@ pub(super) fn without_dominated(
     ground: Option<&ConsistencyMap>,
     windows: &ShiftableWindows,
     grid: &PlanGrid,
+    cloud: Option<&CloudEvidence>,
 ) -> Vec<PlaneHypothesis> {
     let every = (SPACING / grid.step).round().max(1.0) as usize;
     let supports = crate::execution::map(&hypotheses, |_, h| {
-        Support::of(h, ground, windows, grid, every)
+        let of_cloud = cloud.map(|cloud| cloud.of(&h.group.plane));
+        Support::of(h, ground, windows, (grid, every), of_cloud.as_ref())
     });
     let stays = not_dominated(&supports);
     (hypotheses.into_iter().zip(stays))
@@ -54,7 +57,7 @@ fn not_dominated(supports: &[Support]) -> Vec<bool> {
     stays
 }
 
-/// Where the views speak for a plane more than for the ground.
+/// Where the views and a point cloud speak for a plane more than for the ground.
 #[derive(Default)]
 struct Support {
     /// Positions of the plan, ascending, with what is said there, nats.
@@ -68,8 +71,8 @@ impl Support {
         h: &PlaneHypothesis,
         ground: Option<&ConsistencyMap>,
         windows: &ShiftableWindows,
-        grid: &PlanGrid,
-        every: usize,
+        (grid, every): (&PlanGrid, usize),
+        cloud: Option<&OfPlane>,
     ) -> Self {
         let window = &h.map.grid;
         let (dc, dr) = window.offset_in(grid);
@@ -87,8 +90,10 @@ impl Support {
             for (column, c) in places(window.width, dc, grid.width) {
                 let single_view = h.single_view.at(row * window.width + column);
                 let observed = windows.evidence_at(&h.map, [column, row]);
-                let said = observed.nats_with_prior() + single_view;
-                if said <= 0.0 || !of_region.contains(window.center(column, row).x) {
+                let place = window.center(column, row);
+                let of_cloud = cloud.map_or(0.0, |cloud| cloud.nats_at(&place));
+                let said = observed.nats_with_prior() + single_view + of_cloud;
+                if said <= 0.0 || !of_region.contains(place.x) {
                     continue;
                 }
                 let of_ground = ground.map(|g| windows.evidence_at(g, [c, r]).nats_with_prior());

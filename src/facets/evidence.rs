@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::borders::{Arrangement, BorderCosts, LineIndex};
+use super::point_cloud::{CloudEvidence, OfPlane};
 use super::register::RegisterEvidence;
 use crate::geometry::Plane;
 use crate::labelling::Energy;
@@ -26,6 +27,8 @@ pub(super) struct CellEvidence {
     pub nats: f64,
     /// Sum of the single-view evidence over the area, nats: at most one a square metre.
     pub single_view: f64,
+    /// Sum of what a point cloud says of the plane over the area, nats.
+    pub cloud: f64,
 }
 
 /// The evidence for every plane in every cell that it may cover.
@@ -45,6 +48,7 @@ impl PlaneEvidence {
         grid: &PlanGrid,
         ground: Option<&ConsistencyMap>,
         windows: &ShiftableWindows,
+        cloud: Option<&CloudEvidence>,
     ) -> Self {
         let raster = arrangement.raster(grid);
         let ground = match ground {
@@ -52,7 +56,8 @@ impl PlaneEvidence {
             None => vec![0.0; arrangement.cells],
         };
         let per_group = crate::execution::map_part(hypotheses, 0.7..0.75, |_, h| {
-            sum_over_cells(h, windows, &raster, grid)
+            let of_cloud = cloud.map(|cloud| cloud.of(&h.group.plane));
+            sum_over_cells(h, windows, &raster, grid, of_cloud.as_ref())
         });
         let samples = samples_of_cells(&raster, arrangement.cells);
         let sample_m2 = grid.step * grid.step;
@@ -103,8 +108,9 @@ impl PlaneEvidence {
         // What a register says for a roof counts for every plane.
         let against = self.ground.iter().zip(&registered).map(|(g, r)| g - r);
         let costs = |(planes, against): (&Vec<(u32, CellEvidence)>, f64)| {
-            let cost =
-                |(plane, e): &(u32, CellEvidence)| (*plane, against - e.nats - e.single_view);
+            let cost = |(plane, e): &(u32, CellEvidence)| {
+                (*plane, against - e.nats - e.single_view - e.cloud)
+            };
             planes.iter().map(cost).collect()
         };
         let unary = self.cells.iter().zip(against).map(costs).collect();
@@ -172,6 +178,7 @@ fn sum_over_cells(
     windows: &ShiftableWindows,
     raster: &[u32],
     grid: &PlanGrid,
+    cloud: Option<&OfPlane>,
 ) -> BTreeMap<usize, CellEvidence> {
     let (map, region) = (&hypothesis.map, &hypothesis.region);
     let window = &map.grid;
@@ -196,10 +203,12 @@ fn sum_over_cells(
             let cell = raster[r as usize * grid.width + c as usize];
             let k = row * window.width + column;
             let single_view = hypothesis.single_view.at(k);
-            if cell == u32::MAX
-                || (map.weight(k) == 0.0 && single_view == 0.0)
-                || !of_region.contains(window.center(column, row).x)
-            {
+            let place = window.center(column, row);
+            if cell == u32::MAX || !of_region.contains(place.x) {
+                continue;
+            }
+            let of_cloud = cloud.map_or(0.0, |cloud| cloud.nats_at(&place));
+            if map.weight(k) == 0.0 && single_view == 0.0 && of_cloud == 0.0 {
                 continue;
             }
             let cell = cell as usize;
@@ -209,6 +218,7 @@ fn sum_over_cells(
             }
             let e = &mut run.1;
             e.single_view += single_view * area;
+            e.cloud += of_cloud * area;
             let observed = windows.evidence_at(map, [column, row]);
             let weight = observed.weight * area;
             e.area += area;
@@ -284,6 +294,7 @@ mod tests {
             &grid,
             ground.as_ref(),
             &windows,
+            None,
         );
         let index = LineIndex::new(Vec::new());
         let energy = evidence.energy(

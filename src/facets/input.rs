@@ -1,9 +1,25 @@
 //! Input of the facet stage: the results of the stages before it.
 
+use nalgebra::Point3;
+
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
+use crate::params::PointCloudParams;
 use crate::planes::{HalfPlane, ProposedPlane};
 use crate::terrain::Ground;
+
+/// A point cloud in the frame of the images.
+#[derive(Clone, Debug)]
+pub struct PlacedCloud {
+    /// Its points, local frame.
+    pub points: Vec<Point3<f64>>,
+    /// Standard deviation of its heights, metres.
+    pub accuracy_m: f64,
+    /// Probability that it belongs to this place.
+    pub belongs: f64,
+    /// How far its points are believed.
+    pub params: PointCloudParams,
+}
 
 /// Everything that facets are reconstructed from.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +34,8 @@ pub struct FacetInput<'a> {
     pub ground: &'a Ground,
     /// Planes that other sources propose.
     pub proposals: &'a [ProposedPlane],
+    /// A point cloud that belongs here.
+    pub cloud: Option<&'a PlacedCloud>,
     /// Are half-planes and pairs of lines grouped beside them? Not where sets of coplanar lines
     /// are all that there is.
     pub line_pairs: bool,

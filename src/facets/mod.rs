@@ -12,6 +12,7 @@
 //! delineation       closed outlines
 //! competing_planes  the planes with their maps and lines, by which facets are measured
 //! verification      the tests that a facet must pass
+//! point_cloud       points of a cloud, in nats
 //! register          footprints of a register, in nats; each compared with the model
 //! reconstruct       the stage: orders B99 4.2 and 4.3
 //! ```
@@ -28,13 +29,14 @@ mod dominated;
 mod evidence;
 mod input;
 mod islands;
+mod point_cloud;
 mod reconstruct;
 mod register;
 mod verification;
 
 pub(crate) use borders::ON_LINE;
 pub use borders::{Border, BorderKind};
-pub use input::FacetInput;
+pub use input::{FacetInput, PlacedCloud};
 pub use reconstruct::{FacetTrace, reconstruct_facets};
 pub use register::{FootprintFinding, FootprintVerdict, RegisterTrace, RegisterVerdict};
 pub use verification::{FacetRejection, RejectedFacet};

@@ -19,8 +19,11 @@ use super::dominated::without_dominated;
 use super::evidence::PlaneEvidence;
 use super::input::FacetInput;
 use super::islands::without_islands;
+use super::point_cloud::CloudEvidence;
 use super::register::{RegisterEvidence, RegisterTrace};
-use super::verification::{FacetRejection, Measured, RejectedFacet, tail_on_ground, verify};
+use super::verification::{
+    FacetRejection, KnownEvidence, Measured, RejectedFacet, tail_on_ground, verify,
+};
 use crate::evidence::JudgedFacet;
 use crate::execution::{Sharded, sharded_map};
 use crate::geometry::{Plane, bounds};
@@ -74,6 +77,7 @@ pub fn reconstruct_facets(
         half_planes,
         ground,
         proposals,
+        cloud,
         line_pairs,
     } = *evidence;
     let neighbours = line_neighbours(lines);
@@ -117,9 +121,11 @@ pub fn reconstruct_facets(
     let hypotheses = plane_hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
     let (ground_map, hypotheses) = (ground_map?, hypotheses?);
     let windows = ShiftableWindows::new(lines.iter().map(|l| l.segment), &grid);
-    let hypotheses = without_dominated(hypotheses, ground_map.as_ref(), &windows, &grid);
+    let cloud = cloud.map(|cloud| CloudEvidence::new(cloud, ground, &grid));
+    let cloud = cloud.as_ref();
+    let hypotheses = without_dominated(hypotheses, ground_map.as_ref(), &windows, &grid, cloud);
     let bounding = bounding_lines(&input, &hypotheses, ground, params);
-    let borders = border_lines(&input, &hypotheses, &bounding, &windows, params);
+    let borders = border_lines(&input, &hypotheses, &bounding, &windows, cloud, params);
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));
 
     let evidence = PlaneEvidence::collect(
@@ -128,6 +134,7 @@ pub fn reconstruct_facets(
         &grid,
         ground_map.as_ref(),
         &windows,
+        cloud,
     );
     let groups: Vec<PlaneGroup> = (hypotheses.iter())
         .map(|h| h.group.without_propagated(&input))
@@ -151,8 +158,12 @@ pub fn reconstruct_facets(
         maps,
         scene: reduced,
     };
-    let colours = (scene, None);
-    let mut verified = solve(&mut labelling, &competing, &groups, ground, colours, params);
+    let known = KnownEvidence {
+        colours: scene,
+        register: None,
+        cloud,
+    };
+    let mut verified = solve(&mut labelling, &competing, &groups, ground, &known, params);
     let register = scene.known.footprints.as_ref().map(|register| {
         let CompetingPlanes {
             evidence,
@@ -167,8 +178,11 @@ pub fn reconstruct_facets(
         if register.counts() {
             let energy = evidence.energy(arrangement, planes, index, Some(&register), params);
             labelling = Labelling::new(energy, planes.len() as u32);
-            let known = (scene, Some(&register));
-            verified = solve(&mut labelling, &competing, &groups, ground, known, params);
+            let known = KnownEvidence {
+                register: Some(&register),
+                ..known
+            };
+            verified = solve(&mut labelling, &competing, &groups, ground, &known, params);
         }
         register.findings(&verified.facets, evidence.ground(), &arrangement.areas)
     });
@@ -255,14 +269,13 @@ struct Verified {
     rejected: Vec<RejectedFacet>,
 }
 
-/// Labels, delineates and verifies until no facet is rejected. `known` are the photographs as they
-/// were taken, and a register that counts.
+/// Labels, delineates and verifies until no facet is rejected.
 fn solve(
     labelling: &mut Labelling<BorderCosts>,
     competing: &CompetingPlanes,
     groups: &[PlaneGroup],
     ground: &Ground,
-    known: (&Scene, Option<&RegisterEvidence>),
+    known: &KnownEvidence,
     params: &RoofParams,
 ) -> Verified {
     const ROUNDS: usize = 4;
@@ -410,6 +423,7 @@ mod tests {
             half_planes: &[],
             ground: &Ground::level(0.0),
             proposals,
+            cloud: None,
             line_pairs: true,
         };
         reconstruct_facets(&scene, &evidence, &RoofParams::default())

@@ -11,6 +11,7 @@ mod dense;
 mod lines;
 mod objectspace;
 mod planes;
+mod point_cloud;
 mod register;
 
 pub use self::adjacency::*;
@@ -22,6 +23,7 @@ pub use self::dense::*;
 pub use self::lines::*;
 pub use self::objectspace::*;
 pub use self::planes::*;
+pub use self::point_cloud::*;
 pub use self::register::*;
 
 use serde::{Deserialize, Serialize};
@@ -49,6 +51,8 @@ pub struct Params {
     pub sweep: SweepParams,
     /// Dense matching.
     pub dense: DenseParams,
+    /// A point cloud that is known beforehand.
+    pub point_cloud: PointCloudParams,
     /// Grouping, delineation, verification, conflicts.
     pub roof: RoofParams,
     /// Rectangles in object space.

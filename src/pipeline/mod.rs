@@ -272,6 +272,8 @@ impl Run {
             terrain: (self.results.half_planes.as_ref()).and_then(|found| found.ground.terrain()),
             footprints: (self.results.facets.as_ref())
                 .and_then(|found| found.trace.facets.register.as_ref()),
+            point_cloud: (self.results.dense.as_ref())
+                .and_then(|found| found.trace.point_cloud.as_ref()),
         };
         let report = report::report(&self.scene, &self.params, &self.summaries, known, seconds);
         files.push(("report.json".into(), report));

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::stages::Stage;
 use super::summary::StageSummary;
+use crate::dense::CloudComparison;
 use crate::facets::RegisterTrace;
 use crate::params::Params;
 use crate::scene::{Scene, ViewAdjustment, ViewShift};
@@ -38,11 +39,13 @@ pub(crate) struct KnownReport<'a> {
     pub terrain: Option<&'a TerrainComparison>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub footprints: Option<&'a RegisterTrace>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point_cloud: Option<&'a CloudComparison>,
 }
 
 impl KnownReport<'_> {
     fn is_empty(&self) -> bool {
-        self.terrain.is_none() && self.footprints.is_none()
+        self.terrain.is_none() && self.footprints.is_none() && self.point_cloud.is_none()
     }
 }
 

@@ -31,7 +31,13 @@ pub struct LoadOptions {
     /// Standard deviation of their borders, metres; that of registers when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub footprint_accuracy_m: Option<f64>,
-    /// Paths of terrain models and footprints that are among the files and not used.
+    /// Path of the point cloud (LAS, LAZ) among the files; the only one among them when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point_cloud: Option<String>,
+    /// Standard deviation of its heights, metres; that of surveys when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point_cloud_accuracy_m: Option<f64>,
+    /// Paths of terrain models, footprints and point clouds that are among the files and not used.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub unused: Vec<String>,
     /// EPSG code of the world's reference system; the files' own when absent.

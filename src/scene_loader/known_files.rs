@@ -1,4 +1,5 @@
-//! Terrain and footprints among the files: those that the options name, else the only ones.
+//! Terrain, footprints and point clouds among the files: those that the options name, else the only
+//! ones.
 
 use nalgebra::Vector3;
 
@@ -6,13 +7,18 @@ use super::input::LoadOptions;
 use super::names::listed;
 use crate::error::{Error, Result};
 use crate::known::{
-    FOOTPRINT_ACCURACY_M, Known, Register, TERRAIN_ACCURACY_M, Terrain, WorldSystem,
+    FOOTPRINT_ACCURACY_M, Known, POINT_CLOUD_ACCURACY_M, PointCloud, Register, TERRAIN_ACCURACY_M,
+    Terrain, WorldSystem,
 };
-use crate::orientation::{FileKind, InputFile, detect};
+use crate::orientation::{FileKind, InputFile, POINT_CLOUD, detect};
 
 /// By this property the program's own maps are told from a register: what it has found itself
 /// confirms nothing.
 const OWN_PROPERTY: &str = "\"lowest_roof_m\"";
+
+/// Points are of use this far around the region of interest, metres. Assumption: roofs begin inside
+/// it and reach as far beyond.
+const AROUND_REGION_M: f64 = 30.0;
 
 /// What each file is; what the options name as terrain or footprints is that.
 pub(super) fn kinds_of(files: &[InputFile], options: &LoadOptions) -> Vec<FileKind> {
@@ -20,6 +26,7 @@ pub(super) fn kinds_of(files: &[InputFile], options: &LoadOptions) -> Vec<FileKi
     let kind = |file: &InputFile| match file {
         _ if is(file, &options.terrain) => FileKind::Terrain,
         _ if is(file, &options.footprints) => FileKind::Footprints,
+        _ if is(file, &options.point_cloud) => FileKind::Terrain,
         _ => detect(file),
     };
     files.iter().map(kind).collect()
@@ -56,17 +63,57 @@ pub(super) fn read_known(
         &registers,
         &mut warnings,
     )?;
-    let terrain = terrain.map(|file| {
-        let accuracy_m = options.terrain_accuracy_m.unwrap_or(TERRAIN_ACCURACY_M);
-        Terrain::read(file, system, origin, accuracy_m)
+    let is_cloud = |file: &&InputFile| file.bytes.starts_with(POINT_CLOUD);
+    let clouds: Vec<&InputFile> = match (&options.terrain, terrain) {
+        // The cloud that is named as the terrain is the one that is meant.
+        (Some(_), Some(file)) if is_cloud(&file) => vec![file],
+        _ => terrains.iter().copied().filter(is_cloud).collect(),
+    };
+    let cloud = match (&options.point_cloud, &clouds[..]) {
+        // What is to be said of several has been said of them as terrain.
+        (None, [_, _, ..]) => None,
+        (named, clouds) => {
+            let mut said = Vec::new();
+            let file = chosen(files, named.as_deref(), clouds, &mut said)?;
+            // Of the only one this is said as of the terrain.
+            said.retain(|said| !warnings.contains(said));
+            warnings.extend(said);
+            file
+        }
+    };
+    let terrain = match terrain {
+        Some(file) => {
+            let accuracy_m = options.terrain_accuracy_m.unwrap_or(TERRAIN_ACCURACY_M);
+            match Terrain::read(file, system, origin, accuracy_m) {
+                // Its roofs are of use without its ground.
+                Err(problem) if options.terrain.is_none() && is_cloud(&file) => {
+                    warnings.push(format!("as terrain it is not used: {problem}"));
+                    None
+                }
+                read => Some(read?),
+            }
+        }
+        None => None,
+    };
+    let cloud = cloud.map(|file| {
+        let accuracy_m = options
+            .point_cloud_accuracy_m
+            .unwrap_or(POINT_CLOUD_ACCURACY_M);
+        let local = |[x0, y0, x1, y1]: [f64; 4]| {
+            let low = [x0 - origin.x, y0 - origin.y].map(|v| v - AROUND_REGION_M);
+            let high = [x1 - origin.x, y1 - origin.y].map(|v| v + AROUND_REGION_M);
+            [low[0], low[1], high[0], high[1]]
+        };
+        PointCloud::read(file, system, origin, accuracy_m, options.roi.map(local))
     });
     let register = footprints.map(|file| {
         let accuracy_m = options.footprint_accuracy_m.unwrap_or(FOOTPRINT_ACCURACY_M);
         Register::read(file, system, origin, accuracy_m, &mut warnings)
     });
     let known = Known {
-        terrain: terrain.transpose()?,
+        terrain,
         footprints: register.transpose()?.map(Into::into),
+        point_cloud: cloud.transpose()?.map(Into::into),
     };
     Ok((known, warnings))
 }

@@ -72,7 +72,13 @@ struct JsLoadOptions {
     /// Standard deviation of their borders, metres.
     #[tsify(optional)]
     footprint_accuracy_m: Option<f64>,
-    /// Paths of terrain models and footprints that are among the files and not used.
+    /// Path of the point cloud among the files; the only one among them when absent.
+    #[tsify(optional)]
+    point_cloud: Option<String>,
+    /// Standard deviation of its heights, metres.
+    #[tsify(optional)]
+    point_cloud_accuracy_m: Option<f64>,
+    /// Paths of terrain models, footprints and point clouds that are among the files and not used.
     #[tsify(optional)]
     unused: Vec<String>,
     /// EPSG's number of the world's reference system.
@@ -110,6 +116,7 @@ struct SceneInfo {
 struct KnownFiles {
     terrain: Option<String>,
     footprints: Option<String>,
+    point_cloud: Option<String>,
 }
 
 #[wasm_bindgen]
@@ -245,6 +252,7 @@ impl Session {
             known: KnownFiles {
                 terrain: scene.known.terrain.as_ref().map(|t| t.file.clone()),
                 footprints: scene.known.footprints.as_ref().map(|f| f.file.clone()),
+                point_cloud: scene.known.point_cloud.as_ref().map(|c| c.file.clone()),
             },
         })
     }
@@ -328,6 +336,8 @@ pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         terrain_accuracy_m: options.terrain_accuracy_m,
         footprints: options.footprints,
         footprint_accuracy_m: options.footprint_accuracy_m,
+        point_cloud: options.point_cloud,
+        point_cloud_accuracy_m: options.point_cloud_accuracy_m,
         unused: options.unused,
         epsg: options.epsg,
         memory_mb: None,
@@ -349,6 +359,8 @@ impl From<&LoadOptions> for JsLoadOptions {
             terrain_accuracy_m: options.terrain_accuracy_m,
             footprints: options.footprints.clone(),
             footprint_accuracy_m: options.footprint_accuracy_m,
+            point_cloud: options.point_cloud.clone(),
+            point_cloud_accuracy_m: options.point_cloud_accuracy_m,
             unused: options.unused.clone(),
             epsg: options.epsg,
             apply_fix: options.apply_fix,

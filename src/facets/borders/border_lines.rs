@@ -17,6 +17,7 @@ use nalgebra::{Point2, Vector2};
 
 use super::border::{Border, BorderKind};
 use super::extent::extent_lines;
+use crate::facets::point_cloud::CloudEvidence;
 use crate::geometry::Segment3;
 use crate::ids::ProposalOrigin;
 use crate::lines3d::ThetaFrame;
@@ -35,6 +36,7 @@ pub(crate) fn border_lines(
     hypotheses: &[PlaneHypothesis],
     bounding: &[Segment3],
     windows: &ShiftableWindows,
+    cloud: Option<&CloudEvidence>,
     params: &RoofParams,
 ) -> Vec<Border> {
     let mut borders = DistinctBorders::default();
@@ -62,7 +64,7 @@ pub(crate) fn border_lines(
     for border in outermost_lines(input, hypotheses, params) {
         borders.add(border);
     }
-    for border in extent_lines(input, hypotheses, windows) {
+    for border in extent_lines(input, hypotheses, windows, cloud) {
         borders.add(border);
     }
     for border in closing_lines(input, hypotheses, params) {
@@ -270,7 +272,9 @@ fn proposed_sides(input: &GroupingInput, hypotheses: &[PlaneHypothesis]) -> Vec<
         proposed.filter(move |p| match p.origin {
             ProposalOrigin::Rectangle(_) => true,
             ProposalOrigin::CoplanarSet(_) => !is_swept,
-            ProposalOrigin::CornerPlane(_) | ProposalOrigin::DensePlane(_) => !has_lines,
+            ProposalOrigin::CornerPlane(_)
+            | ProposalOrigin::DensePlane(_)
+            | ProposalOrigin::CloudPlane(_) => !has_lines,
         })
     });
     let sides = proposed.flat_map(|r| {

@@ -10,6 +10,7 @@
 use nalgebra::{Point2, Vector2};
 
 use super::border::{Border, BorderKind};
+use crate::facets::point_cloud::CloudEvidence;
 use crate::geometry::Segment3;
 use crate::photoconsistency::{ShiftableWindows, WINDOW};
 use crate::planes::{GroupingInput, PlaneHypothesis, ProposedPlane};
@@ -31,9 +32,10 @@ pub(super) fn extent_lines(
     input: &GroupingInput,
     hypotheses: &[PlaneHypothesis],
     windows: &ShiftableWindows,
+    cloud: Option<&CloudEvidence>,
 ) -> Vec<Border> {
     crate::execution::map(hypotheses, |_, h| {
-        sides(input, h, windows).unwrap_or_default()
+        sides(input, h, windows, cloud).unwrap_or_default()
     })
     .into_iter()
     .flatten()
@@ -46,6 +48,7 @@ fn sides(
     input: &GroupingInput,
     h: &PlaneHypothesis,
     windows: &ShiftableWindows,
+    cloud: Option<&CloudEvidence>,
 ) -> Option<Vec<Border>> {
     if h.group.half_planes().is_empty() && h.group.proposals.is_empty() {
         return None;
@@ -59,7 +62,7 @@ fn sides(
     let reach = end - start;
     let along = reach.try_normalize(1e-6)?;
     let across = Vector2::new(-along.y, along.x);
-    let votes = votes(h, windows, &start, [&along, &across]);
+    let votes = votes(h, windows, cloud, &start, [&along, &across]);
     let least = LEAST_NATS / (h.map.grid.step * h.map.grid.step);
     let [(t0, t1), (u0, u1)] = best_rectangle(&votes, reach.norm(), least)?;
     let at = |t: f64, u: f64| start + along * t + across * u;
@@ -114,12 +117,14 @@ struct Vote {
 fn votes(
     h: &PlaneHypothesis,
     windows: &ShiftableWindows,
+    cloud: Option<&CloudEvidence>,
     start: &Point2<f64>,
     axes: [&Vector2<f64>; 2],
 ) -> Vec<Vote> {
     let grid = &h.map.grid;
+    let of_cloud = cloud.map(|cloud| cloud.of(&h.group.plane));
     (0..grid.width * grid.height)
-        .filter(|&k| h.map.weight(k) > 0.0)
+        .filter(|&k| h.map.weight(k) > 0.0 || of_cloud.is_some())
         .map(|k| (k, grid.center(k % grid.width, k / grid.width)))
         .filter(|(_, p)| h.region.contains(p))
         .map(|(k, p)| {
@@ -127,7 +132,8 @@ fn votes(
             let observed = windows.evidence_at(&h.map, at);
             Vote {
                 at: axes.map(|axis| (p - start).dot(axis)),
-                nats: observed.nats_with_prior(),
+                nats: observed.nats_with_prior()
+                    + of_cloud.as_ref().map_or(0.0, |cloud| cloud.nats_at(&p)),
             }
         })
         .collect()

@@ -26,6 +26,7 @@ use std::collections::BTreeSet;
 use super::borders::Arrangement;
 use super::competing_planes::CompetingPlanes;
 use super::delineation::Outline;
+use super::point_cloud::CloudEvidence;
 use super::register::RegisterEvidence;
 use crate::evidence::{Evidence, EvidenceModel, WindowCounts};
 use crate::geometry::{Plane, mean_point};
@@ -105,22 +106,34 @@ impl VerifiedFacet {
     }
 }
 
-/// Verifies a facet between the other facets and over the ground. `colours` are the photographs as
-/// they were taken; a register that counts adds a term of its own; `before` is what was measured of
-/// the same cells before.
+/// What facets are verified by besides how the views agree on them.
+#[derive(Clone, Copy)]
+pub(crate) struct KnownEvidence<'a> {
+    /// The photographs as they were taken.
+    pub colours: &'a Scene,
+    /// A register that counts.
+    pub register: Option<&'a RegisterEvidence<'a>>,
+    /// A point cloud that counts.
+    pub cloud: Option<&'a CloudEvidence<'a>>,
+}
+
+/// Verifies a facet between the other facets and over the ground. A register and a cloud add terms
+/// of their own; `before` is what was measured of the same cells before.
 pub(crate) fn verify(
     competing: &CompetingPlanes,
     (facet, outline): (&Facet, &Outline),
     occluders: &Occluders,
     ground: &Ground,
-    (colours, register): (&Scene, Option<&RegisterEvidence>),
+    known: &KnownEvidence,
     before: Option<&Measured>,
     params: &RoofParams,
 ) -> Result<VerifiedFacet, FacetRejection> {
     is_placed_like_a_roof(facet, ground, params)?;
-    let measured = Measured::of(competing, facet, outline, occluders, colours, before);
+    let measured = Measured::of(competing, facet, outline, occluders, known.colours, before);
     let mut evidence = EvidenceModel::of_facets().weigh(&measured.features);
-    evidence.terms.extend(register.map(|r| r.of_facet(facet)));
+    let terms = &mut evidence.terms;
+    terms.extend(known.register.map(|r| r.of_facet(facet)));
+    terms.extend(known.cloud.map(|c| c.of_facet(facet)));
     Ok(VerifiedFacet { evidence, measured })
 }
 

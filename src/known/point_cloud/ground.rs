@@ -27,9 +27,9 @@ const WIDEST_GAP_M: f64 = 60.0;
 const FLAT: f64 = 0.02;
 
 impl GroundPoints {
-    pub(super) fn new(offset: [f64; 3]) -> Self {
+    pub(super) fn new() -> Self {
         Self {
-            offset,
+            offset: [0.0; 3],
             points: Vec::new(),
         }
     }

@@ -1,26 +1,32 @@
-//! Point clouds as terrain: the points that a LAS or LAZ file classifies as ground, on a grid.
+//! Point clouds: the points that a LAS or LAZ file classifies as ground, on a grid; and those that
+//! may lie on roofs.
 //!
 //! ```text
 //! header        what a LAS file states of itself: format, place, number of points, system
 //! compressed    records of a LAZ file, decompressed by crate `laz`
 //! ground        points of the ground on a grid: a plane through the points around each cell
+//! thinned       points of roofs and the ground around a scene, as many as are of use
 //! ```
 //!
 //! LAS 1.0 to 1.4 (ASPRS), point formats 0 to 10. Without points that are classified as ground a
-//! cloud is refused: the lowest points of a cell are those of a roof where it is wider than the
-//! cell.
+//! cloud is refused as terrain: the lowest points of a cell are those of a roof where it is wider
+//! than the cell.
 
 mod compressed;
 mod ground;
 mod header;
 #[cfg(test)]
 mod tests;
+mod thinned;
 
 use std::collections::BTreeMap;
+
+use nalgebra::{Point3, Vector3};
 
 use self::compressed::Compressed;
 use self::ground::GroundPoints;
 use self::header::Header;
+use self::thinned::Thinned;
 use super::height_grid::HeightGrid;
 use super::refusal::refusal;
 use super::system::WorldSystem;
@@ -40,7 +46,63 @@ const GROUND: u8 = 2;
 const KEY_POINT: u8 = 8;
 const WATER: u8 = 9;
 
+/// Classes that lie neither on roofs nor on the ground: low, medium and high vegetation, noise,
+/// wires and their towers, and high noise.
+const NO_SURFACE: [u8; 9] = [3, 4, 5, 7, 13, 14, 15, 16, 18];
+
+/// The points of the ground on a grid.
 pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid> {
+    let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
+    let mut points = GroundPoints::new();
+    let mut others: BTreeMap<u8, u64> = BTreeMap::new();
+    let count = each_point(file, system, &mut |header, record| {
+        let [class, withheld] = header.class_of(record);
+        match class {
+            _ if withheld == 1 => {}
+            GROUND | WATER => points.push(header.position(record)),
+            // Formats from 6 on have a flag for key points; 8 is reserved there.
+            KEY_POINT if header.format < 6 => points.push(header.position(record)),
+            _ => *others.entry(class).or_default() += 1,
+        }
+    })?;
+    if points.is_empty() {
+        let problem = format!(
+            "none of its {count} points is classified as ground (class 2){}",
+            listed(&others)
+        );
+        let advice = "classify its ground first, as with the filter smrf of pdal, or give a grid";
+        return Err(refuse(&problem, advice));
+    }
+    points
+        .grid()
+        .map_err(|problem| refuse(&problem, "give points of the ground, in metres"))
+}
+
+/// The points that may lie on roofs or on the ground, in the local frame of a scene with this
+/// origin, thinned: not those of vegetation and noise, nor those outside of the box in plan.
+pub(super) fn read_surface(
+    file: &InputFile,
+    system: &WorldSystem,
+    origin: Vector3<f64>,
+    within: Option<[f64; 4]>,
+) -> Result<Vec<Point3<f32>>> {
+    let mut points = Thinned::new(within);
+    each_point(file, system, &mut |header, record| {
+        let [class, withheld] = header.class_of(record);
+        if withheld == 0 && !NO_SURFACE.contains(&class) {
+            let position = header.position(record);
+            points.push(Vector3::from(position) - origin);
+        }
+    })?;
+    Ok(points.finished())
+}
+
+/// Hands over every record of a file; returns how many there are.
+fn each_point(
+    file: &InputFile,
+    system: &WorldSystem,
+    take: &mut dyn FnMut(&Header, &[u8]),
+) -> Result<u64> {
     let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
     let damaged = |problem: String| refuse(&problem, "copy the file again, or export it again");
     let bytes = &file.bytes[..];
@@ -76,18 +138,6 @@ pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid>
         );
         return Err(damaged(problem));
     }
-    let mut points = GroundPoints::new(header.offset);
-    let mut others: BTreeMap<u8, u64> = BTreeMap::new();
-    let mut take = |record: &[u8]| {
-        let [class, withheld] = header.class_of(record);
-        match class {
-            _ if withheld == 1 => {}
-            GROUND | WATER => points.push(header.position(record)),
-            // Formats from 6 on have a flag for key points; 8 is reserved there.
-            KEY_POINT if header.format < 6 => points.push(header.position(record)),
-            _ => *others.entry(class).or_default() += 1,
-        }
-    };
     match header.is_compressed {
         false => {
             let length = usize::from(header.record_length);
@@ -97,7 +147,8 @@ pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid>
                 return Err(damaged(problem));
             }
             let all = records.chunks_exact(length);
-            all.take(header.count as usize).for_each(&mut take);
+            all.take(header.count as usize)
+                .for_each(|record| take(&header, record));
         }
         true => {
             let mut compressed = Compressed::new(&header, bytes).map_err(damaged)?;
@@ -109,22 +160,11 @@ pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid>
                         header.count
                     ))
                 })?;
-                take(record);
+                take(&header, record);
             }
         }
     }
-    if points.is_empty() {
-        let problem = format!(
-            "none of its {} points is classified as ground (class 2){}",
-            header.count,
-            listed(&others)
-        );
-        let advice = "classify its ground first, as with the filter smrf of pdal, or give a grid";
-        return Err(refuse(&problem, advice));
-    }
-    points
-        .grid()
-        .map_err(|problem| refuse(&problem, "give points of the ground, in metres"))
+    Ok(header.count)
 }
 
 /// The classes that points have instead, the most frequent ones.

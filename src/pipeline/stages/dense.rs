@@ -1,8 +1,8 @@
 //! Planes from dense matching (B99 2).
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
-use super::{required, to_bytes};
-use crate::dense::{DensePlane, DenseTrace, dense_planes};
+use super::{from_bytes, required, to_bytes};
+use crate::dense::{CloudComparison, DensePlane, DenseTrace, dense_planes};
 use crate::execution::Sharded;
 use crate::params::Params;
 use crate::scene::Scene;
@@ -18,7 +18,7 @@ impl StageDefinition for Dense {
     const NAME: &'static str = "dense";
     const TITLE: &'static str = "Dense planes";
     const SECTION: &'static str = "B99 2";
-    const READS: &'static [&'static str] = &["dense"];
+    const READS: &'static [&'static str] = &["dense", "point_cloud"];
     const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::HalfPlanes];
     const SHARD_MAPS: &'static [&'static str] = &["levels", "patches"];
 
@@ -27,24 +27,36 @@ impl StageDefinition for Dense {
             return Ok((Vec::new(), DenseTrace::default()).into());
         }
         let lines = &required(&before.lines).value;
-        Ok(dense_planes(scene, lines, &required(&before.half_planes).ground)?.into())
+        let ground = &required(&before.half_planes).ground;
+        Ok(dense_planes(scene, lines, ground, &params.point_cloud)?.into())
     }
 
     fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {
+        let mut counts = vec![
+            ("planes", found.value.len()),
+            ("patches", found.trace.patches.len()),
+        ];
+        let cloud = found.trace.point_cloud.as_ref();
+        counts.extend(cloud.map(|cloud| ("planes of the point cloud", cloud.planes.len())));
         Findings {
-            counts: vec![
-                ("planes", found.value.len()),
-                ("patches", found.trace.patches.len()),
-            ],
-            warnings: Vec::new(),
+            counts,
+            warnings: cloud
+                .and_then(CloudComparison::warning)
+                .into_iter()
+                .collect(),
         }
     }
 
     fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&found.value)
+        to_bytes(&(&found.value, &found.trace.point_cloud))
     }
 
     fn unpack(bytes: &[u8]) -> Option<Found> {
-        super::untraced(bytes)
+        let (planes, point_cloud): (_, Option<CloudComparison>) = from_bytes(bytes)?;
+        let trace = DenseTrace {
+            point_cloud,
+            ..DenseTrace::default()
+        };
+        Some((planes, trace).into())
     }
 }

@@ -4,8 +4,9 @@
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{is_any, required, warn_if};
 use crate::buildings::{RoofTrace, reconstruct_roofs, verify_lines};
+use crate::dense::CloudComparison;
 use crate::execution::Sharded;
-use crate::facets::{FacetInput, RegisterTrace};
+use crate::facets::{FacetInput, PlacedCloud, RegisterTrace};
 use crate::model::RoofModel;
 use crate::objectspace::proposed_planes;
 use crate::params::Params;
@@ -23,7 +24,7 @@ impl StageDefinition for Facets {
     const NAME: &'static str = "facets";
     const TITLE: &'static str = "Facets";
     const SECTION: &'static str = "B99 4.2, 4.3";
-    const READS: &'static [&'static str] = &["roof"];
+    const READS: &'static [&'static str] = &["roof", "point_cloud"];
     const NEEDS: &'static [Stage] = &[
         Stage::Segments,
         Stage::Lines,
@@ -53,14 +54,32 @@ impl StageDefinition for Facets {
             .enumerate()
             .filter(|(_, plane)| plane.is_verified());
         let corners = verified.map(|(i, plane)| plane.proposed(i));
+        let cloud = before.dense.iter().filter_map(|found| {
+            let compared = found.trace.point_cloud.as_ref();
+            compared.filter(|compared| compared.counts())
+        });
+        let of_cloud = (cloud.clone()).flat_map(|c| &c.planes).enumerate();
+        let of_cloud = of_cloud.map(|(i, plane)| plane.proposed(i));
         let others = rectangles.into_iter().chain(coplanar).chain(corners);
-        let proposals: Vec<ProposedPlane> = others.chain(dense).collect();
+        let proposals: Vec<ProposedPlane> = others.chain(dense).chain(of_cloud).collect();
+        let placed = |compared: &CloudComparison| {
+            // Only the instance that weighs the planes has the points.
+            let known = scene.known.point_cloud.as_ref()?;
+            Some(PlacedCloud {
+                points: compared.placed(known),
+                accuracy_m: compared.accuracy_m,
+                belongs: compared.belongs,
+                params: params.point_cloud.clone(),
+            })
+        };
+        let cloud: Option<PlacedCloud> = cloud.filter_map(placed).next();
         let evidence = FacetInput {
             segments: &required(&before.segments).value,
             lines: &required(&before.lines).value,
             half_planes: &half_planes.value,
             ground: &half_planes.ground,
             proposals: &proposals,
+            cloud: cloud.as_ref(),
             line_pairs: params.method.pairs_lines(),
         };
         let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof)?;

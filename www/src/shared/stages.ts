@@ -87,14 +87,14 @@ export const STAGES = [
     title: "Dense planes",
     section: "B99 2",
     methods: ["lines", "combined"],
-    reads: ["dense"],
+    reads: ["dense", "point_cloud"],
   },
   {
     name: "facets",
     title: "Facets",
     section: "B99 4.2, 4.3",
     methods: ["lines", "combined", "coplanar", "adjacency"],
-    reads: ["roof"],
+    reads: ["roof", "point_cloud"],
   },
   {
     name: "corrections",

@@ -102,6 +102,7 @@ export const TERMS = {
     "What measurements say for or against a candidate: the sum of the logarithms of likelihood ratios, in nats.",
     "likelihood-ratio",
     "posterior",
+    "point-cloud",
   ),
   facet: term(
     "facet",
@@ -182,6 +183,12 @@ export const TERMS = {
     "",
     "How far the image of a point moves from one view to another. The nearer the point, the larger it is.",
     "triangulation",
+  ),
+  "point-cloud": term(
+    "point cloud",
+    "",
+    "Points on roofs, ground and trees, as airborne laser scanning measures them. Their accuracy is stated, their datum often another one.",
+    "evidence",
   ),
   posterior: term(
     "posterior",

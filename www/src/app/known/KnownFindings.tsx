@@ -1,19 +1,21 @@
-/** What the images say of the terrain model and the footprints that are known beforehand. */
-import type { RegisterTrace, TerrainComparison } from "../../shared/records";
+/** What the images say of the terrain model, the footprints and the point cloud that are known beforehand. */
+import type { CloudComparison, RegisterTrace, TerrainComparison } from "../../shared/records";
 import { Links } from "../inspector/Inspector";
 import { counted } from "../parts/counted";
-import { FOOTPRINT_WORDS, outcomesOf, registerWords, terrainWords } from "../parts/knownText";
+import { cloudWords, FOOTPRINT_WORDS, outcomesOf, registerWords, terrainWords } from "../parts/knownText";
 import { results } from "../state/results";
 import { tab } from "../state/viewState";
 
 export function KnownFindings() {
-  const { terrain, grouping } = results.value;
+  const { terrain, dense, grouping } = results.value;
   const register = tab.value === "facets" ? grouping?.register : undefined;
   const ground = tab.value === "facets" || tab.value === "halfplanes" ? terrain : null;
+  const cloud = tab.value === "facets" || tab.value === "dense" ? dense?.trace.point_cloud : undefined;
   return (
     <>
       {ground !== null && <Terrain found={ground} />}
       {register !== undefined && <Footprints found={register} />}
+      {cloud !== undefined && <PointCloud found={cloud} />}
     </>
   );
 }
@@ -24,6 +26,18 @@ function Terrain({ found }: { found: TerrainComparison }) {
       <h2>Terrain</h2>
       <p class="muted">{found.file}</p>
       <p>{terrainWords(found)}</p>
+    </section>
+  );
+}
+
+function PointCloud({ found }: { found: CloudComparison }) {
+  return (
+    <section class="panel" data-testid="known-point-cloud">
+      <h2>Point cloud</h2>
+      <p class="muted">
+        {found.file}: {counted(found.planes.length, "planes")}
+      </p>
+      <p>{cloudWords(found)}</p>
     </section>
   );
 }

@@ -1,4 +1,4 @@
-/** Terrain models and footprints among the files: what each is taken as, and why one is not. */
+/** Terrain models, footprints and point clouds among the files: what each is taken as, and why one is not. */
 import type { Inspection, SceneInfo } from "../../shared/records";
 import { isKnownKind, type KnownKind, type RunOptions } from "../state/project";
 
@@ -15,6 +15,17 @@ const TAKEN: Record<KnownKind, string> = {
   footprints: "taken as the footprints",
 };
 
+/** A point cloud is taken as the terrain, for its roofs, or for both. */
+function takenWords(path: string, kind: KnownKind, known: SceneInfo["known"] | null): string {
+  const isCloud = known?.point_cloud === path;
+  if (!isCloud) {
+    return TAKEN[kind];
+  }
+  return known?.terrain === path
+    ? "taken as the terrain, and for its points on roofs"
+    : "taken for its points on roofs";
+}
+
 /** What is known beforehand, in the order of the files; `known` are the files that the loaded scene has taken. */
 export function knownFiles(
   { files }: Pick<Inspection, "files">,
@@ -24,7 +35,7 @@ export function knownFiles(
   const all = files.flatMap(({ path, kind }) => (isKnownKind(kind) ? [{ path, kind }] : []));
   return all.map(({ path, kind }) => {
     const isOut = wanted.leftOut.includes(path);
-    const isTaken = known === null ? null : known[kind] === path;
+    const isTaken = known === null ? null : known[kind] === path || known.point_cloud === path;
     const rivals = all.filter((one) => one.kind === kind && !wanted.leftOut.includes(one.path));
     const reason = () => {
       if (isOut) {
@@ -40,7 +51,7 @@ export function knownFiles(
         ? "not taken: there are several; choose one"
         : "not taken by itself: it may be a result of this program; choose it if it is none";
     };
-    return { path, kind, isTaken, words: isTaken === true ? TAKEN[kind] : reason() };
+    return { path, kind, isTaken, words: isTaken === true ? takenWords(path, kind, known) : reason() };
   });
 }
 

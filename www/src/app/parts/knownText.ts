@@ -1,5 +1,11 @@
 /** What the images say of what is known beforehand, in words. */
-import type { FootprintVerdict, RegisterTrace, TerrainComparison, Vec2 } from "../../shared/records";
+import type {
+  CloudComparison,
+  FootprintVerdict,
+  RegisterTrace,
+  TerrainComparison,
+  Vec2,
+} from "../../shared/records";
 import { percentText } from "./numberText";
 
 /** Of a single footprint. */
@@ -81,5 +87,26 @@ export function terrainWords({ verdict, images_above_m }: TerrainComparison): st
       return "Not used: it follows the roofs, so it is a surface model. Give a terrain model.";
     case "elsewhere":
       return "Not used: it covers less than half of the place. Is it in another coordinate system?";
+  }
+}
+
+/** Of a point cloud. */
+export function cloudWords({ verdict, belongs, moved_m: [east, north, up] }: CloudComparison): string {
+  const probability = `probability ${percentText(belongs)}`;
+  const used = "its points on roofs proposed planes and counted as evidence";
+  switch (verdict) {
+    case "used":
+      return `It belongs to this place (${probability}): ${used}.`;
+    case "moved": {
+      const inPlan = shiftWords([east, north]);
+      const parts = [inPlan === "nothing" ? "" : inPlan, lengthWords(up, "up", "down")];
+      return `It belongs to this place (${probability}), but is displaced as a whole: it was moved by ${parts.filter((part) => part !== "").join(" and ")} to what the images show, and ${used}.`;
+    }
+    case "unchecked":
+      return `The images show too little to check it: ${used} as they are.`;
+    case "left-out":
+      return `The images contradict it as a whole (${probability} that it is of this place), so its points on roofs were left out. Is it of another place, or in another coordinate system?`;
+    case "elsewhere":
+      return "Hardly any of its points lie in the scene. Is it in another coordinate system?";
   }
 }

@@ -114,6 +114,7 @@ export const FEATURE_WORDS: Record<string, string> = {
   ln_1_plus_half_planes: "number of half-planes",
   cos_slope: "slope",
   inside_footprint: "share inside of known footprints",
+  on_point_cloud: "share on the points of a cloud",
   height_m: "height above the ground",
   roughness_px: "roughness",
   missing_views: "views that see it and do not show it",
