@@ -47,7 +47,7 @@ fn heights(camera: &Camera, draft: &Draft, drawn: &Segment2) -> Option<[f64; 2]>
         let roof = || house.facets.iter().flat_map(|f| corners(&f.facet));
         let at = |z: f64| roof().map(move |p| camera.project(&Point3::new(p.x, p.y, z)));
         let seen: Vec<Point2<f64>> = at(low).chain(at(high)).collect::<Option<_>>()?;
-        let [least, most] = bounds(seen.into_iter());
+        let [least, most] = bounds(seen);
         let is_over = (0..2).all(|i| least[i] <= middle[i] && middle[i] <= most[i]);
         is_over.then_some([low, high])
     });

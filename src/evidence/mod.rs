@@ -25,7 +25,7 @@ pub(crate) use clutter::ClutterTable;
 pub use judged::{
     Candidates, JudgedFacet, JudgedLine, JudgedSurface, WindowCounts, WindowHistogram,
 };
-pub(crate) use uncertainty::UncertaintyTable;
+pub(crate) use uncertainty::{Inflation, UncertaintyTable};
 pub(crate) use walls::WallEvidence;
 pub(crate) use windows::WindowEvidenceTable;
 

@@ -5,7 +5,6 @@ use std::sync::OnceLock;
 use serde::Deserialize;
 
 use crate::math::hypot;
-use crate::model::SideSupport;
 
 /// What the covariance of an adjustment leaves out: edges that are not where they seem, and the
 /// orientation, by which all of a scene is off alike.
@@ -24,16 +23,21 @@ pub(crate) struct UncertaintyTable {
     /// Of the height of a corner.
     pub corner_height: Inflation,
     /// Of the place of a side across it in plan, by what it rests on.
-    sides: SideInflations,
+    pub sides: SideInflations,
 }
 
+/// Of sides by what their place rests on.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SideInflations {
-    edges: Inflation,
-    few_edges: Inflation,
-    planes: Inflation,
-    nothing: Inflation,
+pub(crate) struct SideInflations {
+    /// Image edges in three photographs and more.
+    pub edges: Inflation,
+    /// Image edges in one or two.
+    pub few_edges: Inflation,
+    /// The planes of two facets that meet there.
+    pub planes: Inflation,
+    /// None of these.
+    pub nothing: Inflation,
 }
 
 /// `sigma'^2 = (scale sigma)^2 + (floor_px u)^2`, u a ground pixel in the unit of sigma.
@@ -52,16 +56,6 @@ impl UncertaintyTable {
             let fitted = serde_json::from_str(include_str!("uncertainty.json"));
             fitted.expect("the table is part of the program")
         })
-    }
-
-    /// Of a side.
-    pub(crate) fn side(&self, support: SideSupport) -> &Inflation {
-        match support {
-            SideSupport::Edges => &self.sides.edges,
-            SideSupport::FewEdges => &self.sides.few_edges,
-            SideSupport::Planes => &self.sides.planes,
-            SideSupport::Nothing => &self.sides.nothing,
-        }
     }
 }
 

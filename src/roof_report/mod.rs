@@ -2,11 +2,11 @@
 //! and rakes, heights, volumes, each with its standard deviation, and the photographs that show it.
 //!
 //! ```text
-//! edges          kinds of edges, from the facets alone
-//! estimate       a number and its standard deviation
-//! shape          a building as a function of uncertain numbers, and the propagation of their errors
-//! straight_sides corners in plan, and the straight sides between them
-//! photographs    which views show a facet
+//! edges           kinds of edges, from the facets alone
+//! estimate        a number and its standard deviation
+//! straight_sides  corners in plan, and the straight sides between them
+//! shape           a building as a function of uncertain numbers, whose errors are propagated
+//! photographs     which views show a facet
 //! ```
 //!
 //! Heights and volumes are above the ground as the building has it; how well the height of the

@@ -7,10 +7,10 @@
 //! sigma^2 of f(x) = sum_i (f(x + sigma_i e_i) - f(x - sigma_i e_i))^2 / 4
 //! ```
 //!
-//! The numbers x are the place s of every straight side across it, the tilt t_f of every facet along
-//! its steepest direction and across it, and one number u by which all facets are too high. Their
-//! standard deviations are those that the adjustment states of sides, slopes and heights in the
-//! middle m.
+//! The numbers x are the place s of every straight side across it, the tilt t_f of every facet
+//! along its steepest direction and across it, and one number u by which all facets are too high.
+//! Their standard deviations are those that the adjustment states of sides, slopes and heights in
+//! the middle m.
 //!
 //! Assumption: the numbers are not correlated, and a facet tilts as easily across its steepest
 //! direction as along it. Only the variances leave the adjustment; pieces of outlines that go on

@@ -13,7 +13,7 @@ use nalgebra::{DVector, Point2, Vector2, Vector3};
 
 use super::adjust::{AdjustmentProblem, Solution, Term};
 use super::wireframe::{Wireframe, WireframeState};
-use crate::evidence::UncertaintyTable;
+use crate::evidence::{Inflation, UncertaintyTable};
 use crate::math::median;
 use crate::model::{CornerUncertainty, FacetUncertainty, SideSupport, SideUncertainty};
 
@@ -170,11 +170,20 @@ impl Covariance<'_> {
             let sigma = self.sigma(&[u, v].concat());
             SideUncertainty {
                 ends: places,
-                sigma_m: self.table.side(support).of(sigma, self.pixel_m),
+                sigma_m: inflation_of(self.table, support).of(sigma, self.pixel_m),
                 support,
             }
         };
         sides.map(of_side).collect()
+    }
+}
+
+fn inflation_of(table: &UncertaintyTable, support: SideSupport) -> &Inflation {
+    match support {
+        SideSupport::Edges => &table.sides.edges,
+        SideSupport::FewEdges => &table.sides.few_edges,
+        SideSupport::Planes => &table.sides.planes,
+        SideSupport::Nothing => &table.sides.nothing,
     }
 }
 

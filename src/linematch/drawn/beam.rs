@@ -27,7 +27,7 @@ const STEP_PX: f64 = 1.25;
 const MOST_HEIGHTS: usize = 160;
 /// Places along a line where the step is sampled.
 const PLACES: usize = 24;
-/// Candidates that are fitted. Assumption: as many edges as run side by side on a roof and about it.
+/// Candidates that are fitted. Assumption: so many edges run side by side on a roof and about it.
 const MOST: usize = 16;
 /// Candidates this many heights from a better one are the same.
 const SAME: usize = 2;

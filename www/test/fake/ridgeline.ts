@@ -74,6 +74,7 @@ function facet(indices: number[], plane: typeof SOUTH, probability: number, dens
       height_m: 0.05,
       slope_deg: 0.4,
       corners: indices.map((i) => ({ at: corner(i), sigma_m: [0.03, 0.04, 0.06] })),
+      sides: [],
     },
     lines: [],
     half_planes: [],
@@ -202,7 +203,7 @@ export class Session implements CoreSession {
       origin: [1000, 2000, 0],
       warnings: [],
       agreement: null,
-      known: { terrain: null, footprints: null },
+      known: { terrain: null, footprints: null, point_cloud: null },
     };
   }
 

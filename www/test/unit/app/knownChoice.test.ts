@@ -16,21 +16,29 @@ const wordsOf = (wanted: Parameters<typeof knownFiles>[1], known: Parameters<typ
 
 describe("files that are known beforehand", () => {
   it("say what they are taken as, or why they are not", () => {
-    expect(wordsOf(NO_OPTIONS, { terrain: "dtm.asc", footprints: null })).toEqual({
+    expect(wordsOf(NO_OPTIONS, { terrain: "dtm.asc", footprints: null, point_cloud: null })).toEqual({
       "dtm.asc": "taken as the terrain",
       "old.geojson": "not taken: there are several; choose one",
       "new.geojson": "not taken: there are several; choose one",
     });
     const wanted = { ...NO_OPTIONS, groundZ: 100, leftOut: ["old.geojson"] };
-    expect(wordsOf(wanted, { terrain: null, footprints: "new.geojson" })).toEqual({
+    expect(wordsOf(wanted, { terrain: null, footprints: "new.geojson", point_cloud: null })).toEqual({
       "dtm.asc": "not taken: the height of the ground is stated",
       "old.geojson": "left out",
       "new.geojson": "taken as the footprints",
     });
-    expect(wordsOf(wanted, { terrain: null, footprints: null })["new.geojson"]).toMatch(
+    expect(wordsOf(wanted, { terrain: null, footprints: null, point_cloud: null })["new.geojson"]).toMatch(
       /result of this program/,
     );
     expect(wordsOf(NO_OPTIONS, null)["dtm.asc"]).toBe("");
+  });
+
+  it("say what a point cloud is taken for", () => {
+    const words = (terrain: string | null, cloud: string | null) =>
+      wordsOf(NO_OPTIONS, { terrain, footprints: null, point_cloud: cloud })["dtm.asc"];
+    expect(words("dtm.asc", "dtm.asc")).toBe("taken as the terrain, and for its points on roofs");
+    expect(words(null, "dtm.asc")).toBe("taken for its points on roofs");
+    expect(words("dtm.asc", null)).toBe("taken as the terrain");
   });
 
   it("are named once they are chosen, and neither named nor taken once they are left out", () => {
