@@ -8,8 +8,9 @@ use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
 use crate::camera::Camera;
 use crate::error::Error;
-use crate::geometry::mean_point;
+use crate::geometry::{bounds, mean_point};
 use crate::orientation::EXACT_ROTATION;
+use crate::plan_index::PlanIndex;
 use crate::scene_loader::names::listed;
 
 /// What the cameras give reason to refuse or to warn of.
@@ -141,18 +142,25 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
     }
 }
 
+/// A point this far outside an image still counts as seen, pixels: rounding.
+const BORDER_PX: f64 = 0.5;
+
 /// Samples along each side of an image for the overlap.
 const GRID: u32 = 4;
 
 /// For each view, the greatest number of views (itself included; counted up to three, which is all
 /// that matters) that see one of its sample points on the ground at height `z`.
 fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
+    let footprints = PlanIndex::new(cameras.iter().map(|camera| footprint(camera, z)));
     cameras
         .iter()
         .map(|camera| {
             let seen_by = |world: &Point3<f64>| {
-                let sees = |c: &&&Camera| c.project(world).is_some_and(|p| c.contains(&p, -0.5));
-                cameras.iter().filter(sees).take(3).count()
+                let near = footprints.touching([world.xy(), world.xy()], 0.0);
+                let near = near.map(|i| cameras[i as usize]);
+                let sees =
+                    |c: &&Camera| (c.project(world)).is_some_and(|p| c.contains(&p, -BORDER_PX));
+                near.filter(sees).take(3).count()
             };
             samples(camera)
                 .filter_map(|p| camera.at_height(&p, z))
@@ -161,6 +169,20 @@ fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
                 .unwrap_or(0)
         })
         .collect()
+}
+
+/// A box in plan around what an image shows at height `z`; the whole plane where that has no end.
+fn footprint(camera: &Camera, z: f64) -> [Point2<f64>; 2] {
+    let (w, h) = (f64::from(camera.width), f64::from(camera.height));
+    let (low, high) = (-BORDER_PX, [w + BORDER_PX, h + BORDER_PX]);
+    let corners = [[low, low], [high[0], low], high, [low, high[1]]];
+    let ground = corners.map(|[x, y]| camera.at_height(&Point2::new(x, y), z).map(|p| p.xy()));
+    if ground.iter().any(Option::is_none) {
+        // Farther than any place, and small enough for areas of boxes.
+        let far = Point2::new(1e100, 1e100);
+        return [-far, far];
+    }
+    bounds(ground.into_iter().flatten())
 }
 
 /// A grid of image points that includes the corners.
@@ -222,4 +244,45 @@ fn pair_heights(a: &Camera, b: &Camera) -> Vec<f64> {
         (s > 0.0 && t > 0.0).then(|| 0.5 * ((a.center + ray * s).z + (b.center + other * t).z))
     });
     heights.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Rotation3;
+
+    /// Cameras over 300 m by 300 m, some of which look at the horizon.
+    fn flight(count: usize) -> Vec<Camera> {
+        let mut random = crate::testing::uniform(11);
+        let mut camera = || {
+            let at = Point3::new(300.0 * random(), 300.0 * random(), 60.0 + 20.0 * random());
+            let tilt = if random() < 0.2 { 1.4 } else { 0.3 * random() };
+            let turn = Rotation3::from_euler_angles(0.0, 0.0, 6.0 * random());
+            let down = Rotation3::from_euler_angles(std::f64::consts::PI + tilt, 0.0, 0.0);
+            let k = Matrix3::new(400.0, 0.0, 200.0, 0.0, 400.0, 150.0, 0.0, 0.0, 1.0);
+            Camera::new(k, down * turn, at, 400, 300)
+        };
+        (0..count).map(|_| camera()).collect()
+    }
+
+    #[test]
+    fn asking_the_cameras_around_a_place_counts_as_asking_all() {
+        let cameras = flight(60);
+        let cameras: Vec<&Camera> = cameras.iter().collect();
+        for z in [-20.0, 0.0, 55.0] {
+            let sees = |c: &&Camera, place: &Point3<f64>| {
+                (c.project(place)).is_some_and(|p| c.contains(&p, -BORDER_PX))
+            };
+            let of_all = |camera: &&Camera| {
+                let places = samples(camera).filter_map(|p| camera.at_height(&p, z));
+                let counts = places.map(|x| cameras.iter().filter(|c| sees(c, &x)).count().min(3));
+                counts.max().unwrap_or(0)
+            };
+            let all: Vec<usize> = cameras.iter().map(of_all).collect();
+            assert_eq!(views_together(&cameras, z), all, "{z}");
+            assert!(all.contains(&3), "{all:?}");
+        }
+        let seen_alone = views_together(&cameras[..1], 0.0);
+        assert!(seen_alone[0] <= 1);
+    }
 }
