@@ -501,7 +501,11 @@ def side_inflations(outlines, present):
     of the areas are within one standard deviation: sides of one outline are wrong together."""
     table, sides = {}, [side for _, of in outlines for side in of]
     for support, inflated in present.items():
-        error, stated, pixel = np.array([side[2:] for side in sides if side[0] == support]).T
+        of_support = [side[2:] for side in sides if side[0] == support]
+        if not of_support:
+            table[support] = inflated['scale'], inflated['floor_px']
+            continue
+        error, stated, pixel = np.array(of_support).T
         table[support] = inflation(error, before_inflation(stated, pixel, inflated), pixel)
     ratios = []
     for error, of in outlines:

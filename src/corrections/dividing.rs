@@ -9,7 +9,7 @@ use super::plan::Region;
 use super::shape::{LEAST_AREA_M2, OFF_M, turned, without};
 use crate::geometry::{Plane, Segment3};
 use crate::lines3d::Line3d;
-use crate::model::Facet;
+use crate::model::{Facet, SideSupport, SideUncertainty};
 use crate::planes::HalfPlane;
 
 /// Planes and places farther apart than this many standard deviations are two.
@@ -123,6 +123,13 @@ fn halves(
             if let Some(plane) = plane {
                 part = part.on(plane);
                 part.facet.uncertainty = None;
+            }
+            if let Some(known) = &mut part.facet.uncertainty {
+                known.sides.push(SideUncertainty {
+                    ends: ends.map(|p| p.xy()),
+                    sigma_m: line.sigma_m,
+                    support: SideSupport::Edges,
+                });
             }
             facets.push(part);
         }

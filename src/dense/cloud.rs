@@ -156,6 +156,8 @@ const DATUMS: usize = 3;
 const PATCH_PIXELS: f64 = 0.3;
 /// A shift is named, and taken out, from so many standard deviations on.
 const SIGMAS: f64 = 2.0;
+/// No height or place is known better, metres, whatever is stated.
+const LEAST_SIGMA_M: f64 = 1e-3;
 /// A cloud that belongs here with less probability is left out.
 const DOUBTFUL: f64 = 0.5;
 
@@ -195,8 +197,8 @@ pub(super) fn compare(
     let patch_m = PATCH_PIXELS * matched.z_per_pixel;
     let surface = Surface {
         patches: matched.found,
-        sigma_m: hypot(cloud.accuracy_m, patch_m),
-        place_sigma_m: params.place_sigma_m,
+        sigma_m: hypot(cloud.accuracy_m, patch_m).max(LEAST_SIGMA_M),
+        place_sigma_m: params.place_sigma_m.max(LEAST_SIGMA_M),
     };
     comparison.verdict = CloudVerdict::Unchecked;
     comparison.belongs = params.belongs;
@@ -204,21 +206,22 @@ pub(super) fn compare(
         let away = hypot(shift.x, shift.y) > SIGMAS * hypot(params.place_sigma_m, patch_m)
             || shift.z.abs() > SIGMAS * surface.sigma_m;
         let moved = if away { shift } else { Vector3::zeros() };
-        comparison.moved_m = moved.into();
-        comparison.verdict = match away {
-            true => CloudVerdict::Moved,
-            false => CloudVerdict::Used,
-        };
+        // What no clear roof or ground confirms is neither moved nor believed more than before.
         if let Some([agree, differ]) = agreement(matched, &points, &moved, &surface) {
             let parts = grid.step * grid.step / params.part_m2;
-            let odds = ln(params.belongs / (1.0 - params.belongs))
-                + agree * parts * ln(params.agreement / params.chance)
-                + differ * parts * ln((1.0 - params.agreement) / (1.0 - params.chance));
+            let odds = log_odds(params.belongs)
+                + agree * parts * (ln(share(params.agreement)) - ln(share(params.chance)))
+                + differ
+                    * parts
+                    * (ln(1.0 - share(params.agreement)) - ln(1.0 - share(params.chance)));
             comparison.agreement = Some(agree / (agree + differ));
             comparison.belongs = 1.0 / (1.0 + exp(-odds));
-            if comparison.belongs < DOUBTFUL {
-                comparison.verdict = CloudVerdict::LeftOut;
-            }
+            comparison.moved_m = moved.into();
+            comparison.verdict = match away {
+                _ if comparison.belongs < DOUBTFUL => CloudVerdict::LeftOut,
+                true => CloudVerdict::Moved,
+                false => CloudVerdict::Used,
+            };
         }
     }
     if comparison.counts() {
@@ -226,6 +229,15 @@ pub(super) fn compare(
         comparison.planes = planes(&placed, cloud.accuracy_m, matched, params);
     }
     comparison
+}
+
+/// A share that is neither nothing nor all, whatever the parameter is.
+fn share(parameter: f64) -> f64 {
+    parameter.clamp(1e-3, 1.0 - 1e-3)
+}
+
+fn log_odds(probability: f64) -> f64 {
+    ln(share(probability)) - ln(1.0 - share(probability))
 }
 
 /// The surface that the views agree on.

@@ -305,8 +305,7 @@ fn add_sides(surface: &mut Value, facet: &Facet, known: &FacetUncertainty) {
                 .zip(next)
                 .map(|(p, q)| nalgebra::center(&p.xy(), &q.xy()));
             middles
-                .filter_map(|middle| known.side(&middle))
-                .map(value)
+                .map(|middle| known.side(&middle).map_or(Value::Null, value))
                 .collect()
         };
         rings.map(of_ring).collect()

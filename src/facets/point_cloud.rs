@@ -10,7 +10,8 @@
 //!
 //! o being the share of the points above a roof that are not on it, g that of the points on the
 //! ground where no roof is, and R the range of heights of all others. So many points as are
-//! independent of each other count for a square metre: at most 3 nats, where clear images say five.
+//! independent of each other count for a square metre: at most five nats, as much as clear images
+//! say.
 //!
 //! With the probability w that the cloud belongs here every ratio becomes w L + (1 - w). A plane
 //! as a whole may be no roof, or none any more, by the share e of those in error; then the points
@@ -42,6 +43,8 @@ const REACH_M: f64 = 0.75;
 /// Standard deviation of the height of the ground, metres, as the images show it: a few
 /// decimetres.
 const GROUND_SIGMA_M: f64 = 0.3;
+/// No height is known better, metres, whatever is stated.
+const LEAST_SIGMA_M: f64 = 1e-3;
 const SQRT_TWO_PI: f64 = 2.506_628_274_631_000_2;
 
 /// A point cloud over the plan of a scene.
@@ -108,7 +111,7 @@ impl<'a> CloudEvidence<'a> {
         OfPlane {
             cloud: self,
             plane: *plane,
-            sigma_m: hypot(self.cloud.accuracy_m, place),
+            sigma_m: larger(hypot(self.cloud.accuracy_m, place), LEAST_SIGMA_M),
         }
     }
 
@@ -120,7 +123,7 @@ impl<'a> CloudEvidence<'a> {
         let corner = |p: Point2<f64>| {
             let at = (p - origin) / step;
             [(at.x, self.grid.width), (at.y, self.grid.height)]
-                .map(|(v, size)| v.clamp(0.0, size as f64) as usize)
+                .map(|(v, size)| v.clamp(0.0, (size - 1) as f64) as usize)
         };
         let ([c0, r0], [c1, r1]) = (corner(low), corner(high));
         let (width, height) = (c1 + 1 - c0, r1 + 1 - r0);

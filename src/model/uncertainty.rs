@@ -28,6 +28,10 @@ pub struct CornerUncertainty {
     pub sigma_m: Vector3<f64>,
 }
 
+/// A piece of an outline farther from a side lies on another one, metres. Assumption: closing a
+/// building moves outlines by less.
+const SAME_SIDE_M: f64 = 0.2;
+
 /// How well the place of a side of a facet is known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
@@ -74,7 +78,8 @@ impl SideSupport {
 }
 
 impl FacetUncertainty {
-    /// The side on which a piece of the outline lies, by the middle of the piece.
+    /// The side on which a piece of the outline lies, by the middle of the piece; `None` where no
+    /// side lies there.
     pub fn side(&self, middle: &Point2<f64>) -> Option<&SideUncertainty> {
         let distance = |side: &SideUncertainty| {
             let [from, to] = side.ends;
@@ -82,7 +87,8 @@ impl FacetUncertainty {
             let share = (middle - from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
             (from + along * share.clamp(0.0, 1.0) - middle).norm_squared()
         };
-        (self.sides.iter()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        let nearest = (self.sides.iter()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.filter(|side| distance(side) < SAME_SIDE_M * SAME_SIDE_M)
     }
 
     /// The standard deviations of the corner nearest to a place: closing a building may add corners

@@ -3,7 +3,7 @@
 //! ```text
 //! z_f(p) = z_f(m) + u sigma_f + (g_f + t_f) . (p - m)
 //! dA     = sum_k l_k s_k                     area in plan; l length of a piece of the outline
-//! dl     = s_b / sin(b) - s_a / sin(a)       length of an edge between the sides a and b
+//! dl     = s_b / sin(b) - s_a / sin(a) + s (cot(a) + cot(b))      length of an edge between sides
 //! sigma^2 of f(x) = sum_i (f(x + sigma_i e_i) - f(x - sigma_i e_i))^2 / 4
 //! ```
 //!
@@ -24,7 +24,7 @@ use super::estimate::Estimate;
 use super::straight_sides::{Corners, StraightSides, ring_pieces};
 use crate::geometry::mean_point;
 use crate::ids::FacetId;
-use crate::math::atan2;
+use crate::math::{atan2, larger};
 use crate::model::Facet;
 
 /// Step of a number whose standard deviation is not known: it only shows what depends on it.
@@ -35,6 +35,8 @@ const NO_EFFECT: f64 = 1e-9;
 
 /// Sine of the angle between an edge and a side below which the side does not end it (15 degrees).
 const ENDING_SINE: f64 = 0.2588;
+/// No angle between an edge and what ends it has a smaller sine (3 degrees).
+const LEAST_SINE: f64 = 0.05;
 
 /// A building whose sides and planes can be moved.
 pub(super) struct Shape<'a> {
@@ -222,28 +224,36 @@ impl<'a> Shape<'a> {
         let [p, q] = [&edge.segment.p0, &edge.segment.p1];
         let run = q.xy() - p.xy();
         let along = run.try_normalize(0.0).unwrap_or_else(Vector2::x);
-        let [from, to] = [p, q].map(|end| self.end_shift(x, facet, self.corners.find(end), &along));
+        let [from, to] = [p, q].map(|end| match self.corners.find(end) {
+            Some(corner) => self.end_shift(x, corner, &along),
+            None => 0.0,
+        });
         let moved = run + along * (to - from);
         crate::math::hypot(moved.norm(), self.gradient(x, facet).dot(&moved))
     }
 
-    /// By how much the side that ends an edge at a corner moves the end along the edge, metres.
-    fn end_shift(
-        &self,
-        x: &[f64],
-        facet: usize,
-        corner: Option<usize>,
-        along: &Vector2<f64>,
-    ) -> f64 {
-        let left = |side: usize| {
-            let direction = self.sides.direction(side);
-            Vector2::new(-direction.y, direction.x)
+    /// By how much the end of an edge at a corner moves along it, metres, with the edge's own side
+    /// and with the side that ends it: of all that meet there the one that is known best.
+    fn end_shift(&self, x: &[f64], corner: usize, along: &Vector2<f64>) -> f64 {
+        let left = |v: Vector2<f64>| Vector2::new(-v.y, v.x);
+        let pieces = self.facets.iter().flat_map(|f| &f.pieces);
+        // Per side the shares of its shift across itself that lie along the edge and across it.
+        let sides: Vec<(usize, f64, f64)> = (pieces.filter(|p| p.ends.contains(&corner)))
+            .map(|p| (p.side, left(self.sides.direction(p.side))))
+            .map(|(side, normal)| (side, normal.dot(along), normal.dot(&left(*along))))
+            .collect();
+        let sigma = |side: usize| self.sigmas[side].unwrap_or(f64::INFINITY);
+        let spread = |s: &(usize, f64, f64)| sigma(s.0) / s.1.abs();
+        let own = sides.iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        let ending = sides.iter().filter(|s| s.1.abs() > ENDING_SINE);
+        let ending = (ending.min_by(|a, b| spread(a).total_cmp(&spread(b))))
+            // A corner that no side ends clearly.
+            .or_else(|| sides.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())));
+        let (Some(own), Some(ending)) = (own, ending) else {
+            return 0.0;
         };
-        let pieces = self.facets[facet].pieces.iter();
-        let sides = pieces.filter(|p| p.ends.iter().any(|&end| Some(end) == corner));
-        let ending = sides.map(|p| (p.side, left(p.side).dot(along)));
-        let ending = ending.filter(|(_, sine)| sine.abs() > ENDING_SINE);
-        let ending = ending.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        ending.map_or(0.0, |(side, sine)| x[side] / sine)
+        // Both sides still meet there: s_e = (a n_o s_o + b along) . n_e.
+        let aside = x[own.0] * own.2;
+        (x[ending.0] - aside * ending.2) / larger(ending.1.abs(), LEAST_SINE).copysign(ending.1)
     }
 }

@@ -395,6 +395,62 @@ fn stated_deviations_are_the_spread_of_perturbed_planes_and_sides() {
 }
 
 #[test]
+fn lengths_scatter_as_stated_where_sides_meet_askew() {
+    let corners = [[0.0, 0.0], [10.0, 0.0], [13.0, 6.0], [2.0, 5.0]].map(Point2::from);
+    let ring = corners.map(|p| Point3::new(p.x, p.y, 3.0));
+    let mut facet = crate::testing::facet(&ring);
+    let of_sides = [0.02, 0.05, 0.03, 0.08];
+    let mut sides = sides_of(&facet.outer);
+    for (side, sigma_m) in sides.iter_mut().zip(of_sides) {
+        side.sigma_m = sigma_m;
+    }
+    facet.uncertainty = Some(FacetUncertainty {
+        height_m: HEIGHT_M,
+        slope_deg: 1e-6,
+        corners: Vec::new(),
+        sides,
+    });
+    let (model, _) = close_buildings(&[facet], |_| 0.0);
+    let report = &roof_report(&model)[0];
+    let mut random = uniform(5);
+    let mut found = Vec::new();
+    for _ in 0..4000 {
+        let lines: Vec<(Point2<f64>, Vector2<f64>)> = (0..4)
+            .map(|i| {
+                let along = (corners[(i + 1) % 4] - corners[i]).normalize();
+                let aside = Vector2::new(-along.y, along.x) * (of_sides[i] * normal(&mut random));
+                (corners[i] + aside, along)
+            })
+            .collect();
+        let corner = |i: usize| {
+            let ((p, d), (q, e)) = (lines[(i + 3) % 4], lines[i]);
+            p + d * ((q - p).perp(&e) / d.perp(&e))
+        };
+        found.push([0, 1, 2, 3].map(|i| (corner((i + 1) % 4) - corner(i)).norm()));
+    }
+    for i in 0..4 {
+        let middle = nalgebra::center(&ring[i], &ring[(i + 1) % 4]);
+        let is_it = |e: &&EdgeReport| {
+            let at = nalgebra::center(&e.edge.segment.p0, &e.edge.segment.p1);
+            (at - middle).norm() < 0.01
+        };
+        let edge = report
+            .edges
+            .iter()
+            .find(is_it)
+            .expect("an edge of the facet");
+        let mean = found.iter().map(|l| l[i]).sum::<f64>() / 4000.0;
+        let variance = found
+            .iter()
+            .map(|l| (l[i] - mean) * (l[i] - mean))
+            .sum::<f64>()
+            / 4000.0;
+        let ratio = edge.length_m.sigma.expect("known") / variance.sqrt();
+        assert!((ratio - 1.0).abs() < 0.05, "{i}: {ratio}");
+    }
+}
+
+#[test]
 fn what_is_not_known_has_no_deviation_and_spoils_only_what_it_is_part_of() {
     let mut facets = with_uncertainty(gable());
     facets[1].uncertainty = None;

@@ -53,9 +53,13 @@ pub(super) fn read_known(
         !text.contains("\"CityObjects\"") && !text.contains(OWN_PROPERTY)
     };
     let registers: Vec<&InputFile> = of_kind(FileKind::Footprints).filter(is_register).collect();
+    let is_cloud = |file: &&InputFile| file.bytes.starts_with(POINT_CLOUD);
+    // Beside a grid a cloud is asked for its roofs only.
+    let grids: Vec<&InputFile> = terrains.iter().copied().filter(|f| !is_cloud(f)).collect();
+    let grounds = if grids.is_empty() { &terrains } else { &grids };
     let terrain = match options.ground_z {
         Some(_) => None,
-        None => chosen(files, options.terrain.as_deref(), &terrains, &mut warnings)?,
+        None => chosen(files, options.terrain.as_deref(), grounds, &mut warnings)?,
     };
     let footprints = chosen(
         files,
@@ -63,24 +67,16 @@ pub(super) fn read_known(
         &registers,
         &mut warnings,
     )?;
-    let is_cloud = |file: &&InputFile| file.bytes.starts_with(POINT_CLOUD);
     let clouds: Vec<&InputFile> = match (&options.terrain, terrain) {
         // The cloud that is named as the terrain is the one that is meant.
         (Some(_), Some(file)) if is_cloud(&file) => vec![file],
         _ => terrains.iter().copied().filter(is_cloud).collect(),
     };
-    let cloud = match (&options.point_cloud, &clouds[..]) {
-        // What is to be said of several has been said of them as terrain.
-        (None, [_, _, ..]) => None,
-        (named, clouds) => {
-            let mut said = Vec::new();
-            let file = chosen(files, named.as_deref(), clouds, &mut said)?;
-            // Of the only one this is said as of the terrain.
-            said.retain(|said| !warnings.contains(said));
-            warnings.extend(said);
-            file
-        }
-    };
+    let mut said = Vec::new();
+    let cloud = chosen(files, options.point_cloud.as_deref(), &clouds, &mut said)?;
+    // The same may have been said of them as terrain.
+    said.retain(|said| !warnings.contains(said));
+    warnings.extend(said);
     let terrain = match terrain {
         Some(file) => {
             let accuracy_m = options.terrain_accuracy_m.unwrap_or(TERRAIN_ACCURACY_M);

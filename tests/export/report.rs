@@ -110,8 +110,8 @@ fn tables_hold_planted_areas_lengths_and_places() {
     let edges = rows(&files["edges.csv"]);
     let ridge = edges.iter().find(|e| e["kind"] == "ridge").unwrap();
     assert_eq!(number(ridge, "y0_m"), ORIGIN.y + 3.0);
-    // Both ends by 3 cm along it.
-    assert!((number(ridge, "length_sigma_m") - 0.03 * 2f64.sqrt()).abs() < 1e-3);
+    // The rakes at both ends by 2 cm.
+    assert!((number(ridge, "length_sigma_m") - 0.02 * 2f64.sqrt()).abs() < 1e-3);
     let sum: f64 = (edges.iter().filter(|e| e["kind"] == "eave"))
         .map(|e| number(e, "length_m"))
         .sum();

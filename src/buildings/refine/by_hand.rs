@@ -48,6 +48,9 @@ pub fn adjust_to_statements(
             .map(|&(s, sigma)| Term::Stated(s, sigma))
             .collect()
     };
+    let supports: Vec<Vec<SideSupport>> = (facets.iter().enumerate())
+        .map(|(face, facet)| supports_before(&wireframe, &start, face, facet))
+        .collect();
     let mut believed = believed(&wireframe, &start, facets, params);
     believed.extend(stated(earlier));
     let exact = (wireframe.meets.iter().map(|m| Term::Meet(*m)))
@@ -72,9 +75,6 @@ pub fn adjust_to_statements(
         }
     }
     let solution = problem.solve(&state, &pattern)?;
-    let supports: Vec<Vec<SideSupport>> = (facets.iter().enumerate())
-        .map(|(face, facet)| supports_before(&wireframe, &solution.state, face, facet))
-        .collect();
     let uncertainties = uncertainty_on(&problem, &solution, &supports);
     let adjusted = wireframe.facets(&solution.state, facets);
     let known = adjusted.into_iter().zip(uncertainties);

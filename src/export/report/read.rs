@@ -257,7 +257,7 @@ fn uncertainty_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<FacetUn
     })
 }
 
-/// The sides of all rings; `None` where the file does not have them all.
+/// The sides of all rings but those of which nothing is known; `None` where the file has no sides.
 fn sides_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<Vec<SideUncertainty>> {
     let [sigmas, supports] = ["sideSigma", "sideSupport"].map(|name| list(&surface[name]));
     let (sigmas, supports) = (sigmas?, supports?);
@@ -266,11 +266,14 @@ fn sides_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<Vec<SideUncer
         let [sigmas, supports] = [sigmas, supports].map(|of| of.get(i).and_then(list));
         let (sigmas, supports) = (sigmas?, supports?);
         for (k, p) in ring.iter().enumerate() {
-            sides.push(SideUncertainty {
-                ends: [p.xy(), ring[(k + 1) % ring.len()].xy()],
-                sigma_m: sigmas.get(k)?.as_f64()?,
-                support: SideSupport::named(supports.get(k)?.as_str()?)?,
-            });
+            let (sigma, support) = (sigmas.get(k)?, supports.get(k)?);
+            if !sigma.is_null() {
+                sides.push(SideUncertainty {
+                    ends: [p.xy(), ring[(k + 1) % ring.len()].xy()],
+                    sigma_m: sigma.as_f64()?,
+                    support: SideSupport::named(support.as_str()?)?,
+                });
+            }
         }
     }
     Some(sides)

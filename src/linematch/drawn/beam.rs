@@ -69,7 +69,9 @@ pub(super) fn candidates(
             if channel == Channel::RedBlue && seen.red_blue.is_none() {
                 continue;
             }
-            let image = seen.channel(channel).0;
+            let (image, noise) = seen.channel(channel);
+            // Where most of an image is even, any step would stand out.
+            let chance = noise / (2.0 * PLACES as f64).sqrt();
             let steps: Vec<Option<f64>> = (0..pairs)
                 .map(|k| {
                     line(k)?;
@@ -78,7 +80,10 @@ pub(super) fn candidates(
                 })
                 .collect();
             let mut all: Vec<f64> = steps.iter().flatten().copied().collect();
-            let typical = median(&mut all).unwrap_or(0.0).max(f64::MIN_POSITIVE);
+            let typical = median(&mut all)
+                .unwrap_or(0.0)
+                .max(chance)
+                .max(f64::MIN_POSITIVE);
             for (score, step) in scores.iter_mut().zip(steps) {
                 let ratio = step.unwrap_or(0.0) / typical;
                 *score = score.max(ln(1.0 + ratio * ratio));

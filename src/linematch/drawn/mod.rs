@@ -50,6 +50,10 @@ pub fn line_of_drawn(
     line_between(scene, view, &snapped, best)
 }
 
+/// A drawn edge is at most so many times as long as what the other views measure of it. Assumption:
+/// they see a tenth.
+const MOST_LENGTHS: f64 = 10.0;
+
 /// The line with the ends that were drawn.
 fn line_between(
     scene: &Scene,
@@ -61,6 +65,10 @@ fn line_between(
     let image = ProjectedLine::new(scene.camera(view), &fit.line)?;
     let ends = [image.t_of(&drawn.p0), image.t_of(&drawn.p1)];
     let segment = fit.line.stretch(ends[0], ends[1]);
+    // Nearly along a ray there is no end.
+    if !(segment.length() <= MOST_LENGTHS * fit.line.length()) {
+        return None;
+    }
     let shares = ends.map(|t| t / fit.line.length());
     let [first, last] = shares.map(|share| fit.sigma_at(share));
     Some(Line3d {

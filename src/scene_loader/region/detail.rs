@@ -3,6 +3,8 @@
 //! JPEG spends bits on what is to be seen. Of photographs of one place by one camera and one
 //! program, those that are blurred, burnt out or dark have fewer bits a pixel than the others.
 
+use std::collections::BTreeMap;
+
 use image::ImageFormat;
 
 use crate::math::smaller;
@@ -13,11 +15,30 @@ use crate::scene_loader::planned_view::PlannedView;
 /// What every view tells of a place compared to one of full detail, 0 to 1. Photographs whose
 /// format does not say it, among which are lossless ones, that keep all noise, have 1.
 pub(super) fn shares_of_information(files: &[InputFile], views: &[PlannedView]) -> Vec<f64> {
-    let bits: Vec<Option<f64>> = views
-        .iter()
-        .map(|view| bits_per_pixel(&files[view.file], view.size))
+    let bits = |view: &PlannedView| bits_per_pixel(&files[view.file], view.size);
+    let all: Vec<(Option<f64>, CameraKind)> =
+        views.iter().map(|view| (bits(view), kind(view))).collect();
+    let of_kind = |kind| {
+        all.iter()
+            .filter(move |(_, k)| *k == kind)
+            .map(|(bits, _)| *bits)
+    };
+    let usual: BTreeMap<CameraKind, Option<f64>> = (all.iter())
+        .map(|(_, kind)| (*kind, usual(of_kind(*kind))))
         .collect();
-    shares(&bits)
+    all.iter()
+        .map(|(bits, kind)| share(*bits, usual[kind]))
+        .collect()
+}
+
+/// Photographs of one size and focal length, to a hundredth, are of one camera: what others look at
+/// and how they are compressed says nothing of them.
+type CameraKind = [u32; 3];
+
+fn kind(view: &PlannedView) -> CameraKind {
+    let [width, height] = view.size;
+    let focal = view.whole.k[(0, 0)] * f64::from(view.reduction) / f64::from(width.max(1));
+    [width, height, (100.0 * focal).round() as u32]
 }
 
 /// Bits of a pixel of the compressed photograph.
@@ -27,22 +48,28 @@ fn bits_per_pixel(file: &InputFile, [width, height]: [u32; 2]) -> Option<f64> {
     (is_jpeg && pixels > 0.0).then(|| 8.0 * file.length() as f64 / pixels)
 }
 
-/// Shares by bits a pixel: the median has all of the information, and so has what has more.
+/// Fewest photographs of a camera that say what is usual.
+const FEWEST: usize = 3;
+
+/// The median of the bits of a pixel of one camera's photographs.
+fn usual(bits: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+    let mut known: Vec<f64> = bits.flatten().collect();
+    known.sort_by(f64::total_cmp);
+    let median = known.get(known.len() / 2).copied();
+    median.filter(|bits| known.len() >= FEWEST && *bits > 0.0)
+}
+
+/// The share by bits of a pixel: what is usual has all of the information, and so has what has
+/// more.
 ///
 /// Assumption: information falls with the third power of the bits. Three photographs blurred by 1
 /// to 3 pixels: the sum of their squared gradients does.
-fn shares(bits: &[Option<f64>]) -> Vec<f64> {
-    let mut known: Vec<f64> = bits.iter().flatten().copied().collect();
-    known.sort_by(f64::total_cmp);
-    let usual = known.get(known.len() / 2).copied();
-    let share = |bits: &Option<f64>| match (bits, usual) {
-        (Some(bits), Some(usual)) if usual > 0.0 => {
-            let share = smaller(bits / usual, 1.0);
-            share * share * share
-        }
-        _ => 1.0,
+fn share(bits: Option<f64>, usual: Option<f64>) -> f64 {
+    let (Some(bits), Some(usual)) = (bits, usual) else {
+        return 1.0;
     };
-    bits.iter().map(share).collect()
+    let share = smaller(bits / usual, 1.0);
+    share * share * share
 }
 
 #[cfg(test)]
@@ -52,10 +79,16 @@ mod tests {
 
     #[test]
     fn fewer_bits_than_the_others_tell_less_and_more_tell_no_more() {
-        let found = shares(&[Some(4.0), Some(2.0), Some(4.0), None, Some(5.0)]);
+        let bits = [Some(4.0), Some(2.0), Some(4.0), None, Some(5.0)];
+        let usual_bits = usual(bits.into_iter());
+        assert_eq!(usual_bits, Some(4.0));
+        let found = bits.map(|bits| share(bits, usual_bits));
         assert_eq!(found, [1.0, 0.125, 1.0, 1.0, 1.0]);
-        assert_eq!(shares(&[None, None]), [1.0, 1.0]);
-        assert_eq!(shares(&[Some(0.0), Some(0.0)]), [1.0, 1.0]);
+        let none = [&bits[..2], &[None; 4], &[Some(0.0); 4]];
+        for bits in none {
+            assert_eq!(usual(bits.iter().copied()), None, "{bits:?}");
+        }
+        assert_eq!(share(Some(2.0), None), 1.0);
     }
 
     #[test]

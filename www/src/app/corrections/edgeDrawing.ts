@@ -1,5 +1,5 @@
 /** An edge that is missing in the model, drawn by its two ends in one photograph; the core finds its line in the others. */
-import { type ReadonlySignal, signal } from "@preact/signals";
+import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import type { Vec2 } from "../../shared/records";
 import { scene } from "../state/scene";
 import { showTab } from "../state/viewState";
@@ -19,6 +19,13 @@ export const isDrawingEdge: ReadonlySignal<boolean> = drawing;
 const start = signal<Pixel | null>(null);
 /** The first end, once it is clicked. */
 export const edgeStart: ReadonlySignal<Pixel | null> = start;
+
+// An end in a photograph of another scene is none.
+effect(() => {
+  scene.value;
+  drawing.value = false;
+  start.value = null;
+});
 
 /** Begins an edge in the photographs, or leaves it. */
 export function drawEdge(draws: boolean): void {
