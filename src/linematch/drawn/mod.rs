@@ -65,8 +65,9 @@ fn line_between(
     let image = ProjectedLine::new(scene.camera(view), &fit.line)?;
     let ends = [image.t_of(&drawn.p0), image.t_of(&drawn.p1)];
     let segment = fit.line.stretch(ends[0], ends[1]);
-    // Nearly along a ray there is no end.
-    if !(segment.length() <= MOST_LENGTHS * fit.line.length()) {
+    // Nearly along a ray there is no end; what is no number is refused.
+    let is_bounded = segment.length() <= MOST_LENGTHS * fit.line.length();
+    if !is_bounded {
         return None;
     }
     let shares = ends.map(|t| t / fit.line.length());

@@ -249,7 +249,7 @@ fn pair_heights(a: &Camera, b: &Camera) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Rotation3;
+    use crate::geometry::rotation_from_axis_angle;
 
     /// Cameras over 300 m by 300 m, some of which look at the horizon.
     fn flight(count: usize) -> Vec<Camera> {
@@ -257,8 +257,9 @@ mod tests {
         let mut camera = || {
             let at = Point3::new(300.0 * random(), 300.0 * random(), 60.0 + 20.0 * random());
             let tilt = if random() < 0.2 { 1.4 } else { 0.3 * random() };
-            let turn = Rotation3::from_euler_angles(0.0, 0.0, 6.0 * random());
-            let down = Rotation3::from_euler_angles(std::f64::consts::PI + tilt, 0.0, 0.0);
+            let turn = rotation_from_axis_angle(&Vector3::new(0.0, 0.0, 6.0 * random()));
+            let down =
+                rotation_from_axis_angle(&Vector3::new(std::f64::consts::PI + tilt, 0.0, 0.0));
             let k = Matrix3::new(400.0, 0.0, 200.0, 0.0, 400.0, 150.0, 0.0, 0.0, 1.0);
             Camera::new(k, down * turn, at, 400, 300)
         };
