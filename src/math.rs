@@ -25,6 +25,14 @@ pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     (sin(angle), cos(angle))
 }
 
+/// Density of the normal distribution about 0; as good as nothing beyond thirty standard
+/// deviations.
+pub(crate) fn normal_density(x: f64, sigma: f64) -> f64 {
+    const SQRT_TWO_PI: f64 = 2.506_628_274_631_000_2;
+    let t = smaller((x / sigma).abs(), 30.0);
+    exp(-0.5 * t * t) / (sigma * SQRT_TWO_PI)
+}
+
 /// Median of the values (the lower of the two middle ones for an even count); `None` when empty.
 pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
     if values.is_empty() {

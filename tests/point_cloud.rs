@@ -304,3 +304,65 @@ fn a_file_among_the_photographs_is_terrain_and_roofs_unless_it_has_no_ground() {
     };
     assert!(loaded(las(&all, is_ground), &text).is_err());
 }
+
+#[test]
+fn beside_a_grid_a_cloud_is_roofs_only_and_of_several_none_is_taken() {
+    let (scene, truth) = gable_scene(SIZE_PX);
+    let all = points(&truth);
+    let is_ground = |p: &Point3<f64>| (p.z - truth.ground_z).abs() < 0.1;
+    let grid = format!(
+        "ncols 40\nnrows 40\nxllcorner -40\nyllcorner -40\ncellsize 2\n{}",
+        format!("{} ", truth.ground_z).repeat(1600)
+    );
+    let loaded = |names: &[&str], options: &LoadOptions| {
+        let mut files = files(&scene);
+        for name in names {
+            let bytes = match name.ends_with(".las") {
+                true => las(&all, is_ground),
+                false => grid.clone().into_bytes(),
+            };
+            files.push(InputFile::new(name, bytes));
+        }
+        load_scene(&files, options).unwrap()
+    };
+    let none = LoadOptions::default();
+    let both = loaded(&["cloud.las", "ground.asc"], &none);
+    assert_eq!(both.known.terrain.as_ref().unwrap().file, "ground.asc");
+    assert_eq!(both.known.point_cloud.as_ref().unwrap().file, "cloud.las");
+    // With its height given, the ground is not asked for; the clouds are named all the same.
+    for ground_z in [None, Some(truth.ground_z)] {
+        let options = LoadOptions {
+            ground_z,
+            ..LoadOptions::default()
+        };
+        let several = loaded(&["a.las", "b.las"], &options);
+        assert!(several.known.terrain.is_none() && several.known.point_cloud.is_none());
+        let said = several
+            .warnings
+            .iter()
+            .filter(|w| w.contains("name the one"));
+        assert_eq!(said.count(), 1, "{:?}", several.warnings);
+    }
+}
+
+#[test]
+fn shares_of_all_and_nothing_and_no_error_at_all_give_numbers() {
+    let (scene, truth) = gable_scene(SIZE_PX);
+    let mut params = Params::default();
+    params.point_cloud.belongs = 1.0;
+    params.point_cloud.agreement = 1.0;
+    params.point_cloud.chance = 0.0;
+    params.point_cloud.place_sigma_m = 0.0;
+    let mut scene = load_scene(&files(&scene), &LoadOptions::default()).unwrap();
+    let exact = PointCloud {
+        accuracy_m: 0.0,
+        ..(*cloud(&points(&truth), [0.0; 3]).unwrap()).clone()
+    };
+    scene.known.point_cloud = Some(Arc::new(exact));
+    let mut run = Run::new(scene, params);
+    run.step(Stage::Facets, &ridgeline::silent());
+    assert!((0.0..=1.0).contains(&comparison(&run).belongs));
+    let model = run.results().roof_model().unwrap();
+    let is_number = |f: &ridgeline::model::Facet| f.probability.is_finite();
+    assert!(model.facets.iter().all(is_number));
+}

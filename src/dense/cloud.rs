@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use super::least_rectangle::least_rectangle;
 use super::patch::{Patch, gradient_of};
-use super::patch_match::PatchGrid;
+use super::patch_match::{PatchGrid, STEEPEST};
 use super::region::{Region, grow_regions};
 use super::surface_class::SurfaceEvidence;
 use crate::evidence::WindowEvidenceTable;
@@ -464,8 +464,6 @@ const FINEST_M: f64 = 0.5;
 const COARSEST_M: f64 = 2.0;
 /// Fewest points of a patch.
 const FEWEST_OF_PATCH: usize = 5;
-/// Roofs are less steep than this rise per metre (65 degrees).
-const STEEPEST: f64 = 2.1;
 
 /// The patch of a cell: the plane through the points in it and around it, where they lie in one.
 fn patch(

@@ -32,7 +32,7 @@ const FIRST_LIFT: f64 = 1.0;
 /// First change of the gradient.
 const FIRST_TILT: f64 = 0.5;
 /// Roofs are less steep than this rise per metre (65 degrees).
-const STEEPEST: f64 = 2.1;
+pub(super) const STEEPEST: f64 = 2.1;
 
 /// Patches on a grid; `None` where fewer than two views see the place.
 pub(super) struct PatchGrid {

@@ -28,7 +28,7 @@ use nalgebra::{Point2, Vector2};
 use super::input::PlacedCloud;
 use crate::evidence::{EvidenceTerm, POINT_CLOUD};
 use crate::geometry::{Plane, bounds};
-use crate::math::{exp, hypot, larger, ln, smaller};
+use crate::math::{exp, hypot, larger, ln, normal_density};
 use crate::model::Facet;
 use crate::photoconsistency::PlanGrid;
 use crate::raster::mark_inside;
@@ -45,7 +45,6 @@ const REACH_M: f64 = 0.75;
 const GROUND_SIGMA_M: f64 = 0.3;
 /// No height is known better, metres, whatever is stated.
 const LEAST_SIGMA_M: f64 = 1e-3;
-const SQRT_TWO_PI: f64 = 2.506_628_274_631_000_2;
 
 /// A point cloud over the plan of a scene.
 pub(super) struct CloudEvidence<'a> {
@@ -93,7 +92,7 @@ impl<'a> CloudEvidence<'a> {
         let sigma_m = hypot(cloud.accuracy_m, GROUND_SIGMA_M);
         let elsewhere = cloud.points.iter().map(|p| {
             let height = p.z - ground.z_at(&p.xy());
-            params.ground_share * normal(height, sigma_m)
+            params.ground_share * normal_density(height, sigma_m)
                 + (1.0 - params.ground_share) / params.range_m
         });
         Self {
@@ -179,15 +178,8 @@ impl OfPlane<'_> {
         let p = self.cloud.cloud.points.get(point)?;
         let params = &self.cloud.cloud.params;
         let off = p.z - self.plane.z_at(p.x, p.y);
-        let on_roof = (1.0 - params.off_share) * normal(off, self.sigma_m)
+        let on_roof = (1.0 - params.off_share) * normal_density(off, self.sigma_m)
             + params.off_share / params.range_m;
         Some(on_roof / self.cloud.elsewhere[point])
     }
-}
-
-/// Density of a normal distribution about 0.
-fn normal(x: f64, sigma: f64) -> f64 {
-    // Less is nothing.
-    let t = smaller((x / sigma).abs(), 30.0);
-    exp(-0.5 * t * t) / (sigma * SQRT_TWO_PI)
 }

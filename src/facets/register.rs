@@ -26,7 +26,7 @@ use nalgebra::{Point2, Vector2};
 use super::borders::Arrangement;
 use crate::evidence::EvidenceTerm;
 use crate::known::Register;
-use crate::math::{erfc, exp, larger, ln, smaller};
+use crate::math::{erfc, exp, larger, ln, normal_density, smaller};
 use crate::model::Facet;
 use crate::params::RegisterParams;
 use crate::photoconsistency::PlanGrid;
@@ -174,8 +174,7 @@ impl<'a> RegisterEvidence<'a> {
         if slope(across).abs() < PARALLEL {
             return 0.0;
         }
-        let off = self.depth(k) / self.sigma_m;
-        let density = exp(-0.5 * off * off) / (self.sigma_m * SQRT_TWO_PI);
+        let density = normal_density(self.depth(k), self.sigma_m);
         let ratio = larger(density * self.params.border_range_m, 1.0);
         (b - a).norm() / self.params.border_part_m * self.weighed(ratio)
     }
@@ -319,7 +318,6 @@ impl<'a> RegisterEvidence<'a> {
 const TABLE: usize = 256;
 /// Cosine of the angle between a border and the register's, at most: 25 degrees.
 const PARALLEL: f64 = 0.9;
-const SQRT_TWO_PI: f64 = 2.506_628_274_631_000_2;
 
 /// The samples of a grid between two coordinates along one axis.
 fn samples(low: f64, high: f64, origin: f64, step: f64, count: usize) -> std::ops::Range<usize> {
