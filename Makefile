@@ -76,9 +76,11 @@ judge: native
 calibrate: native
 	$(PYTHON) tests/calibrate.py --self-test
 	$(PYTHON) tests/clutter.py --self-test
+	$(PYTHON) tests/corners.py --self-test
 	$(PYTHON) tests/calibrate.py --binary target/release/ridgeline --fit "$${FIT:-../shared/fit}" \
 		--more "$${SCENES:-../shared/scenes}"
 	$(PYTHON) tests/clutter.py --scenes "$${FIT:-../shared/fit}"
+	$(PYTHON) tests/corners.py --scenes "$${FIT:-../shared/fit}"
 
 bench: native $(PACKAGE)
 	$(PYTHON) tests/bench.py --self-test

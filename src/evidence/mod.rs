@@ -16,12 +16,14 @@
 //! `least_nats` so low that every candidate is seen.
 
 mod clutter;
+mod corners;
 mod judged;
 mod uncertainty;
 mod walls;
 mod windows;
 
 pub(crate) use clutter::ClutterTable;
+pub(crate) use corners::CornerTable;
 pub use judged::{
     Candidates, JudgedFacet, JudgedLine, JudgedSurface, WindowCounts, WindowHistogram,
 };

@@ -5,9 +5,11 @@ use nalgebra::Point3;
 use super::borders::{Arrangement, LINE_HEIGHT, LineIndex};
 use super::delineation::{Delineation, Outline};
 use super::evidence::PlaneEvidence;
+use super::outlines::OutlineEnergy;
 use crate::geometry::Plane;
 use crate::ids::{BuildingId, ViewId};
 use crate::model::{Facet, Occluders};
+use crate::params::RoofParams;
 use crate::photoconsistency::ConsistencyMap;
 use crate::planes::PlaneGroup;
 use crate::scene::Scene;
@@ -67,6 +69,23 @@ impl CompetingPlanes {
             half_planes: group.half_planes(),
             proposals: group.proposals.clone(),
         }
+    }
+
+    /// The outlines, those that are accepted with fewer corners.
+    pub(super) fn simplify(
+        &self,
+        delineation: Delineation,
+        accepted: &[bool],
+        params: &RoofParams,
+    ) -> Delineation {
+        let energy = OutlineEnergy {
+            arrangement: &self.arrangement,
+            planes: &self.planes,
+            lines: &self.index,
+            border_nats_per_m: params.border_nats_per_m,
+            cost: &|cell, plane| self.evidence.cost(cell, plane),
+        };
+        energy.simplify(delineation, accepted)
     }
 
     /// tau_real: the share of the outline on reconstructed lines, B99 4.3.

@@ -31,6 +31,13 @@ pub(super) struct CellEvidence {
     pub cloud: f64,
 }
 
+impl CellEvidence {
+    /// What the plane costs in the cell, nats, where nothing speaks for the ground.
+    fn cost(&self) -> f64 {
+        -self.nats - self.single_view - self.cloud
+    }
+}
+
 /// The evidence for every plane in every cell that it may cover.
 pub(super) struct PlaneEvidence {
     /// Per cell: (plane, evidence), ascending by plane.
@@ -85,6 +92,12 @@ impl PlaneEvidence {
             .map(|i| &self.cells[cell][i].1)
     }
 
+    /// What a plane costs in a cell, nats, but for what a register says; `None` where the plane may
+    /// not cover it.
+    pub(super) fn cost(&self, cell: usize, plane: u32) -> Option<f64> {
+        self.get(cell, plane).map(|e| self.ground[cell] + e.cost())
+    }
+
     /// What the images say of the ground in each cell, nats.
     pub(super) fn ground(&self) -> &[f64] {
         &self.ground
@@ -108,9 +121,7 @@ impl PlaneEvidence {
         // What a register says for a roof counts for every plane.
         let against = self.ground.iter().zip(&registered).map(|(g, r)| g - r);
         let costs = |(planes, against): (&Vec<(u32, CellEvidence)>, f64)| {
-            let cost = |(plane, e): &(u32, CellEvidence)| {
-                (*plane, against - e.nats - e.single_view - e.cloud)
-            };
+            let cost = |(plane, e): &(u32, CellEvidence)| (*plane, against + e.cost());
             planes.iter().map(cost).collect()
         };
         let unary = self.cells.iter().zip(against).map(costs).collect();

@@ -10,6 +10,7 @@
 //! evidence          the data term: photo-consistency and lines for each plane over each cell
 //! islands           patches too small to be a facet or a hole
 //! delineation       closed outlines
+//! outlines          outlines with the corners that roofs have
 //! competing_planes  the planes with their maps and lines, by which facets are measured
 //! verification      the tests that a facet must pass
 //! point_cloud       points of a cloud, in nats
@@ -17,8 +18,8 @@
 //! reconstruct       the stage: orders B99 4.2 and 4.3
 //! ```
 //!
-//! Invariant: facets are unions of cells of one subdivision of the plan, so that they share exact
-//! edges and never overlap.
+//! Invariant: facets are delineated as unions of cells of one subdivision of the plan, so that they
+//! share exact edges and never overlap; simpler outlines keep both.
 //!
 //! Invariant: a plane that fails verification over some cells never covers them again.
 
@@ -29,6 +30,7 @@ mod dominated;
 mod evidence;
 mod input;
 mod islands;
+mod outlines;
 mod point_cloud;
 mod reconstruct;
 mod register;

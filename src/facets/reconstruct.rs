@@ -14,7 +14,7 @@ use super::borders::{
     Arrangement, Border, BorderCosts, BorderKind, LineIndex, border_lines, bounding_lines,
 };
 use super::competing_planes::CompetingPlanes;
-use super::delineation::delineate;
+use super::delineation::{Outline, delineate};
 use super::dominated::without_dominated;
 use super::evidence::PlaneEvidence;
 use super::input::FacetInput;
@@ -289,6 +289,7 @@ fn solve(
         let delineation = delineate(&competing.arrangement, &labels, &competing.planes);
         labelling.relabel(labels);
         let (mut facets, mut accepted) = (Vec::new(), Vec::new());
+        let mut stands = vec![false; delineation.outlines.len()];
         let mut excluded: Vec<(u32, Vec<usize>)> = Vec::new();
         // On the ground no other plane may take their place: they stay in the labelling.
         let mut on_ground = Vec::new();
@@ -301,7 +302,9 @@ fn solve(
             let facet = (&found[i], outline);
             verify(competing, facet, &occluders, ground, known, before, params)
         });
-        for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
+        for (i, ((outline, facet), result)) in
+            (delineation.outlines.iter().zip(found).zip(results)).enumerate()
+        {
             let reason = match result {
                 Ok(verified) => {
                     let windows = verified.windows().clone();
@@ -323,6 +326,7 @@ fn solve(
                             ..facet
                         });
                         accepted.push(judged);
+                        stands[i] = true;
                         continue;
                     }
                     improbable.push(judged);
@@ -359,8 +363,18 @@ fn solve(
         if excluded.is_empty() || round == ROUNDS {
             rejected.extend(on_ground);
             accepted.extend(improbable);
+            let simpler = competing.simplify(delineation, &stands, params);
+            let outlines = simpler
+                .outlines
+                .iter()
+                .zip(stands)
+                .filter(|(_, stands)| *stands);
+            let simple = |(facet, (outline, _)): (Facet, (&Outline, bool))| Facet {
+                probability: facet.probability,
+                ..competing.facet(outline, &simpler, groups)
+            };
             return Verified {
-                facets,
+                facets: facets.into_iter().zip(outlines).map(simple).collect(),
                 judged: accepted,
                 rejected,
             };

@@ -4,7 +4,6 @@
 //!
 //! ```text
 //! gaps               facets cut back where delineation closed a gap to a wall
-//! outline            simpler outlines: short sides between long ones go
 //! wireframe          vertices, planes and sides of a building
 //! profiles           rows of grey values along a side, from inside to outside
 //! edge_observations  sides -> image edges in every view
@@ -25,7 +24,7 @@
 //!
 //! Invariant: an adjusted building has the smaller reprojection error, is a closed solid without a
 //! broken invariant, and its views agree inside the facets as well as before. Otherwise it keeps
-//! its planes; simpler outlines ([`outline`]) on them have to pass the last two tests as well.
+//! its shape.
 //! Invariant: the result has as many facets as the model, in the same order.
 
 mod acceptance;
@@ -36,7 +35,6 @@ mod envelope;
 #[cfg(test)]
 pub(super) mod fixture;
 mod gaps;
-mod outline;
 mod profiles;
 mod relation_tests;
 mod relations;
@@ -87,7 +85,7 @@ pub struct BuildingRefinement {
     pub largest_move_m: f64,
     /// Relations that were tested.
     pub relations: Vec<TestedRelation>,
-    /// Why the adjustment was rejected and at most outlines are simpler; `None` when it was not.
+    /// Why the adjustment was rejected; `None` when it was not.
     pub refused: Option<RefineRejection>,
 }
 
@@ -172,23 +170,21 @@ impl BuildingRefiner<'_> {
     /// their outlines and a small search range, and the others are adjusted again.
     fn refine(&self, report: &mut BuildingRefinement) -> Result<Vec<Facet>, RefineRejection> {
         const ATTEMPTS: usize = 4;
-        let (wireframe, state) = Wireframe::new(self.old);
+        let (wireframe, _) = Wireframe::new(self.old);
         report.sides = wireframe.sides.len();
         if wireframe.size() > self.params.refine.max_unknowns {
             let unknowns = wireframe.size();
             return Err(RefineRejection::TooLarge { unknowns });
         }
-        let simple = self.simplified(&wireframe, &state);
         let mut open = vec![true; self.old.len()];
         for attempt in 1.. {
-            let (rejection, offending) = match self.refined(&simple, &open, report) {
+            let (rejection, offending) = match self.refined(&open, report) {
                 Ok(new) => return Ok(new),
                 Err(why) => why,
             };
             let exhausted = offending.iter().all(|&f| !open[f]);
             if attempt == ATTEMPTS || exhausted {
-                report.refused = Some(rejection);
-                return self.simplified_only(simple).ok_or(rejection);
+                return Err(rejection);
             }
             // In the last attempt no side may move far.
             if attempt + 1 == ATTEMPTS {
@@ -197,35 +193,6 @@ impl BuildingRefiner<'_> {
             offending.into_iter().for_each(|f| open[f] = false);
         }
         unreachable!("the last attempt returns")
-    }
-
-    /// The facets, each with the simpler outline where the images show at least the same share of
-    /// it, and all straightened.
-    fn simplified(&self, wireframe: &Wireframe, state: &WireframeState) -> Vec<Facet> {
-        let jog_m = self.params.refine.jog_m;
-        let facets = outline::simplified(self.old, jog_m);
-        if facets.iter().eq(self.old.iter().copied()) {
-            return outline::straightened(&facets, 0.5 * jog_m);
-        }
-        let simple: Vec<&Facet> = facets.iter().collect();
-        let far = vec![true; facets.len()];
-        let shown = |w: &Wireframe, state: &WireframeState| {
-            let observations = self.edge_observations(w, state, &far);
-            w.shown(state, observations.iter().map(|s| s.side))
-        };
-        let (simple_wireframe, simple_state) = Wireframe::new(&simple);
-        let before = shown(wireframe, state);
-        let after = shown(&simple_wireframe, &simple_state);
-        let chosen: Vec<Facet> = (0..facets.len())
-            .map(|i| {
-                if after[i] >= before[i] {
-                    facets[i].clone()
-                } else {
-                    self.old[i].clone()
-                }
-            })
-            .collect();
-        outline::straightened(&chosen, 0.5 * jog_m)
     }
 
     fn edge_observations(
@@ -238,25 +205,6 @@ impl BuildingRefiner<'_> {
         measure_sides(
             scene, occluders, wireframe, state, search, self.lines, params,
         )
-    }
-
-    /// The simpler outlines on the old planes, of as many facets as the images and the building
-    /// allow; `None` where none is left.
-    fn simplified_only(&self, mut new: Vec<Facet>) -> Option<Vec<Facet>> {
-        let is_new = |new: &[Facet], i: usize| new[i] != *self.old[i];
-        while (0..new.len()).any(|i| is_new(&new, i)) {
-            let Err((_, mut offending)) = self.acceptance_test().accept(new.clone()) else {
-                return Some(new);
-            };
-            offending.retain(|&i| is_new(&new, i));
-            if offending.is_empty() {
-                return None;
-            }
-            for i in offending {
-                new[i] = self.old[i].clone();
-            }
-        }
-        None
     }
 
     /// The facets with their uncertainty: where they are not the adjusted ones, from how far the
@@ -307,18 +255,14 @@ impl BuildingRefiner<'_> {
     /// Those not `open` keep their outlines.
     fn refined(
         &self,
-        simple: &[Facet],
         open: &[bool],
         report: &mut BuildingRefinement,
     ) -> Result<Vec<Facet>, (RefineRejection, Vec<usize>)> {
         let params = &self.params.refine;
         let rejected = |why| (why, Vec::new());
-        let from: Vec<&Facet> = (0..open.len())
-            .map(|i| if open[i] { &simple[i] } else { self.old[i] })
-            .collect();
-        let (wireframe, start) = Wireframe::new(&from);
+        let (wireframe, start) = Wireframe::new(self.old);
         report.sides = wireframe.sides.len();
-        let heights = height_terms(&wireframe, &start, &from, self.lines, params);
+        let heights = height_terms(&wireframe, &start, self.old, self.lines, params);
         let problem = |state: &WireframeState, far: &[bool]| {
             let observations = self.edge_observations(&wireframe, state, far);
             let mut problem =
@@ -350,7 +294,7 @@ impl BuildingRefiner<'_> {
         report.largest_move_m = moves.fold(0.0, f64::max);
         // NaN fails the comparison.
         if report.error_after_px < report.error_before_px {
-            let new = (self.acceptance_test()).accept(wireframe.facets(&regular, &from))?;
+            let new = (self.acceptance_test()).accept(wireframe.facets(&regular, self.old))?;
             Ok(with_uncertainties(new, uncertainties))
         } else {
             Err(rejected(RefineRejection::NoGain))
@@ -549,39 +493,5 @@ mod tests {
             refused,
             Some(RefineRejection::FewObservations { observations: 0 })
         );
-    }
-
-    #[test]
-    fn a_zigzag_goes_even_where_nothing_is_adjusted() {
-        let (mut scene, truth) = gable_scene(320);
-        let mut model = changed(&truth, |p| *p);
-        for view in &mut scene.views {
-            view.gray.data.fill(0.5);
-        }
-        let straight = model.facets.clone();
-        let facet = &mut model.facets[0];
-        let n = facet.outer.len();
-        let lowest = facet
-            .outer
-            .iter()
-            .map(|p| p.z)
-            .fold(f64::INFINITY, f64::min);
-        let is_eave = |&i: &usize| {
-            [i, (i + 1) % n]
-                .iter()
-                .all(|&k| facet.outer[k].z < lowest + 1e-6)
-        };
-        let eave = (0..n).find(is_eave).expect("an eave");
-        let (p, q) = (facet.outer[eave].xy(), facet.outer[(eave + 1) % n].xy());
-        let aside = Vector3::z().cross(&(q - p).push(0.0)).normalize().xy();
-        let corner = |t: f64, by: f64| {
-            let at = p + (q - p) * t + aside * by;
-            facet.plane.lift(at.x, at.y)
-        };
-        let zigzag = [corner(0.3, 0.2), corner(0.6, -0.2)];
-        facet.outer.splice(eave + 1..eave + 1, zigzag);
-        let (facets, trace) = refine_roofs(&scene, &[], &model, &RoofParams::default());
-        assert!(trace.buildings[0].refused.is_some());
-        assert_eq!(facets, straight);
     }
 }

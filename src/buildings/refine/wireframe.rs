@@ -221,27 +221,6 @@ impl Wireframe {
         ]
     }
 
-    /// Per facet the share of its sides without a neighbour, by length, that is among `seen`; all
-    /// of it for a facet without such sides.
-    pub(super) fn shown(
-        &self,
-        state: &WireframeState,
-        seen: impl Iterator<Item = usize>,
-    ) -> Vec<f64> {
-        let mut is_seen = vec![false; self.sides.len()];
-        seen.for_each(|i| is_seen[i] = true);
-        let mut lengths = vec![[0.0f64; 2]; self.faces.len()];
-        for (i, side) in self.sides.iter().enumerate() {
-            if side.kind == SideKind::Free {
-                let length = self.segment(state, side).length();
-                lengths[side.face][0] += length;
-                lengths[side.face][1] += if is_seen[i] { length } else { 0.0 };
-            }
-        }
-        let share = |[all, seen]: [f64; 2]| if all > 0.0 { seen / all } else { 1.0 };
-        lengths.into_iter().map(share).collect()
-    }
-
     /// The plane of a facet.
     pub(super) fn plane(&self, state: &WireframeState, face: usize) -> Plane {
         let at = self.plane_at(face);

@@ -51,24 +51,25 @@ impl BorderCosts {
     /// Share of the full cost of a border between the labels to its left and right.
     fn share(&self, border: &CellBorder, left: u32, right: u32) -> f64 {
         let plane = |label: u32| self.planes.get(label as usize);
-        let (left, right) = (plane(left), plane(right));
-        let sides = [
-            (left, right, -border.to_left()),
-            (right, left, border.to_left()),
-        ];
-        let supports = sides.map(|(plane, beyond, outwards)| match plane {
-            Some(plane) if border.bounds(plane) => {
-                let open_top = border.open_top(plane, beyond, &outwards);
-                ON_LINE + (1.0 - ON_LINE) * open_top
-            }
-            _ => 1.0,
-        });
-        let crease = match (left, right) {
-            (Some(a), Some(b)) if border.is_crease(a, b) => CREASE,
-            _ => 1.0,
-        };
-        supports.into_iter().fold(crease, smaller)
+        border.share(plane(left), plane(right))
     }
+}
+
+/// Share of the full cost of a border between two positions, between the planes to its left and
+/// right or none.
+pub(crate) fn border_share(
+    index: &LineIndex,
+    ends: [Point2<f64>; 2],
+    left: Option<&Plane>,
+    right: Option<&Plane>,
+) -> f64 {
+    let border = CellBorder {
+        full: 1.0,
+        registered: 0.0,
+        heights: index.heights_along(&ends[0], &ends[1]),
+        ends,
+    };
+    border.share(left, right)
 }
 
 impl PairwiseCosts for BorderCosts {
@@ -103,6 +104,26 @@ struct CellBorder {
 }
 
 impl CellBorder {
+    /// Share of its full cost between two planes.
+    fn share(&self, left: Option<&Plane>, right: Option<&Plane>) -> f64 {
+        let sides = [
+            (left, right, -self.to_left()),
+            (right, left, self.to_left()),
+        ];
+        let supports = sides.map(|(plane, beyond, outwards)| match plane {
+            Some(plane) if self.bounds(plane) => {
+                let open_top = self.open_top(plane, beyond, &outwards);
+                ON_LINE + (1.0 - ON_LINE) * open_top
+            }
+            _ => 1.0,
+        });
+        let crease = match (left, right) {
+            (Some(a), Some(b)) if self.is_crease(a, b) => CREASE,
+            _ => 1.0,
+        };
+        supports.into_iter().fold(crease, smaller)
+    }
+
     /// Does a reconstructed line run along the border at a height?
     fn has_line_at(&self, z: f64) -> bool {
         self.heights.iter().any(|h| (h - z).abs() < LINE_HEIGHT)

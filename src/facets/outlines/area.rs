@@ -1,0 +1,136 @@
+//! What the views say of the area between two ways.
+
+use nalgebra::{Point2, Vector2};
+
+use super::OutlineEnergy;
+use super::rings::{Chain, Rings};
+use crate::geometry::bounds;
+use crate::photoconsistency::PlanGrid;
+
+/// Samples are so far apart, metres.
+const STEP_M: f64 = 0.2;
+/// How far outlines may grow beyond all of them, metres: their sides are not longer, mostly.
+const MARGIN_M: f64 = 5.0;
+/// No facet covers a sample.
+const NOBODY: u32 = u32::MAX;
+
+/// Samples of the plan, with the facet that covers each.
+pub(super) struct PlanArea<'a> {
+    energy: &'a OutlineEnergy<'a>,
+    /// The plane of each facet.
+    labels: Vec<u32>,
+    grid: PlanGrid,
+    /// The cell at each sample.
+    cells: Vec<u32>,
+    /// The facet at each sample.
+    owners: Vec<u32>,
+}
+
+impl<'a> PlanArea<'a> {
+    /// `None` where there are no rings.
+    pub(super) fn new(
+        energy: &'a OutlineEnergy<'a>,
+        labels: Vec<u32>,
+        rings: &Rings,
+    ) -> Option<Self> {
+        let used = rings.rings.iter().flat_map(|r| &r.vertices);
+        let [low, high] = bounds(used.map(|&v| rings.vertices[v]));
+        (low.x < high.x).then_some(())?;
+        let margin = Vector2::repeat(MARGIN_M);
+        let grid = PlanGrid::covering(low - margin, high + margin, STEP_M);
+        let facets = labels.len();
+        let mut area = Self {
+            energy,
+            labels,
+            cells: energy.arrangement.raster(&grid),
+            owners: vec![NOBODY; grid.width * grid.height],
+            grid,
+        };
+        for facet in 0..facets {
+            let of_facet = rings.rings.iter().filter(|r| r.facet == facet);
+            let outline: Vec<Vec<Point2<f64>>> = of_facet
+                .map(|r| r.vertices.iter().map(|&v| rings.vertices[v]).collect())
+                .collect();
+            for sample in area.inside(&outline) {
+                area.owners[sample] = facet as u32;
+            }
+        }
+        Some(area)
+    }
+
+    /// The plane of a facet.
+    pub(super) fn label(&self, facet: usize) -> u32 {
+        self.labels[facet]
+    }
+
+    /// The samples inside an odd number of rings.
+    pub(super) fn inside(&self, rings: &[Vec<Point2<f64>>]) -> Vec<usize> {
+        let grid = &self.grid;
+        let index = |x: f64, axis: usize| (x - grid.origin[axis]) / grid.step - 0.5;
+        let [low, high] = bounds(rings.iter().flatten().copied());
+        let rows = index(low.y, 1).ceil().max(0.0)..index(high.y, 1).min(grid.height as f64);
+        let mut samples = Vec::new();
+        for row in rows.start as usize..rows.end.ceil().max(0.0) as usize {
+            let y = grid.center(0, row).y;
+            let sides = rings
+                .iter()
+                .flat_map(|r| r.iter().zip(r.iter().cycle().skip(1)));
+            let crossing = sides.filter(|(a, b)| (a.y > y) != (b.y > y));
+            let mut at: Vec<f64> = crossing
+                .map(|(a, b)| index(a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y), 0))
+                .collect();
+            at.sort_by(f64::total_cmp);
+            for pair in at.chunks_exact(2) {
+                let first = pair[0].ceil().max(0.0) as usize;
+                let end = (pair[1].floor() + 1.0).clamp(0.0, grid.width as f64) as usize;
+                samples.extend((first..end).map(|column| row * grid.width + column));
+            }
+        }
+        samples
+    }
+
+    /// By how much the evidence of the views grows, nats, where samples go to the other side of a
+    /// chain; `None` where a third facet covers one, or its new facet's plane may not.
+    pub(super) fn gain(&self, chain: &Chain, samples: &[usize]) -> Option<f64> {
+        let mut gain = 0.0;
+        for &sample in samples {
+            let (from, to) = self.sides_of(chain, sample)?;
+            // What a facet loses it may have covered for its neighbours' sake alone.
+            let before = from.map_or(0.0, |f| self.cost(sample, f).unwrap_or(0.0));
+            let after = match to {
+                Some(facet) => self.cost(sample, facet)?,
+                None => 0.0,
+            };
+            gain += before - after;
+        }
+        Some(gain * self.grid.step * self.grid.step)
+    }
+
+    /// Gives samples to the other side of a chain.
+    pub(super) fn change_hands(&mut self, chain: &Chain, samples: &[usize]) {
+        for &sample in samples {
+            if let Some((_, to)) = self.sides_of(chain, sample) {
+                self.owners[sample] = to.map_or(NOBODY, |facet| facet as u32);
+            }
+        }
+    }
+
+    /// The facet, or none, that a sample beside a chain belongs to, and the one beyond the chain.
+    fn sides_of(&self, chain: &Chain, sample: usize) -> Option<(Option<usize>, Option<usize>)> {
+        let owner = (self.owners[sample] != NOBODY).then_some(self.owners[sample] as usize);
+        let (left, right) = (Some(chain.left), chain.right);
+        match owner {
+            o if o == left => Some((left, right)),
+            o if o == right => Some((right, left)),
+            _ => None,
+        }
+    }
+
+    /// What a facet's plane costs at a sample, nats a square metre; `None` where it may not be.
+    fn cost(&self, sample: usize, facet: usize) -> Option<f64> {
+        let cell = self.cells[sample];
+        (cell != u32::MAX).then_some(())?;
+        let cost = (self.energy.cost)(cell as usize, self.labels[facet])?;
+        Some(cost / self.energy.arrangement.areas[cell as usize])
+    }
+}
