@@ -3,8 +3,9 @@
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
-use super::super::ground::{ground_height, pixel_in_the_middle, plan_scene, settled, whole_plan};
+use super::super::ground::{ground_heights, pixel_in_the_middle, plan_scene, unreduced_plan};
 use super::super::input::LoadOptions;
+use super::super::plan::Plan;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::math::{larger, smaller};
@@ -59,24 +60,36 @@ pub struct ShownArea {
 }
 
 impl ShownArea {
-    /// What the views show of level ground, at the height that is stated or that the photographs
-    /// show in the middle of the block.
-    pub fn new(files: &[InputFile], options: &LoadOptions) -> Result<Self> {
-        let options = settled(files, options);
-        let plan = whole_plan(files, &options);
+    /// What the views show of level ground, at the height that is stated, else in the middle of
+    /// `ground` (lowest and highest, metres, world frame), else at what the photographs in the
+    /// middle of the block show. By how much photographs are reduced does not matter.
+    pub fn new(
+        files: &[InputFile],
+        options: &LoadOptions,
+        ground: Option<[f64; 2]>,
+    ) -> Result<Self> {
+        let plan = unreduced_plan(files, options);
         if let Some(error) = plan.errors.first() {
             return Err(error.clone());
         }
-        let cameras: Vec<&Camera> = plan.views.iter().map(|view| &view.whole).collect();
-        let shown = ground_height(files, &options, &plan).map(|z| shown_places(&cameras, z));
-        let places = shown.unwrap_or_default().into_iter();
-        let places: Vec<Point2<f64>> = places.map(|p| p + plan.origin.xy()).collect();
-        let [x0, y0, x1, y1] = enclosing(&places).ok_or_else(|| Error::Scene {
+        let stated = options.ground_z.map(|z| [z, z]);
+        let ground = stated.or(ground).or_else(|| ground_heights(files, options));
+        let shown = ground.and_then(|heights| Self::of_plan(&plan, heights));
+        shown.ok_or_else(|| Error::Scene {
             problem: "the cameras do not tell which area three of them show".to_owned(),
             advice: "give the region of interest (--roi x0,y0,x1,y1)".to_owned(),
-        })?;
+        })
+    }
+
+    /// The same of whole images that are not reduced.
+    pub(super) fn of_plan(plan: &Plan, ground: [f64; 2]) -> Option<Self> {
+        let [low, high] = ground.map(|height| height - plan.origin.z);
+        let cameras: Vec<&Camera> = plan.views.iter().map(|view| &view.whole).collect();
+        let places = shown_places(&cameras, 0.5 * (low + high)).into_iter();
+        let places: Vec<Point2<f64>> = places.map(|p| p + plan.origin.xy()).collect();
+        let [x0, y0, x1, y1] = enclosing(&places)?;
         let bounds = [x0.floor(), y0.floor(), x1.ceil(), y1.ceil()];
-        Ok(Self { bounds, places })
+        Some(Self { bounds, places })
     }
 
     /// Does a box (x0, y0, x1, y1, world frame) hold some of the places?
