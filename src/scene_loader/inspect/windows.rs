@@ -137,6 +137,17 @@ pub(super) fn shown_places(cameras: &[&Camera], z: f64) -> Vec<Point2<f64>> {
     crate::execution::map(&rows, row).concat()
 }
 
+/// A box around all that some of the cameras show of ground between these heights, none of it much
+/// more coarsely than the middle of an image; local frame.
+pub(crate) fn box_of_views(cameras: &[&Camera], heights: [f64; 2]) -> Option<[f64; 4]> {
+    let boxes = heights.iter().flat_map(|&z| {
+        let coarsest = coarsest_pixel(cameras, z);
+        let of_camera = move |camera: &&Camera| Some(box_of_shown(camera, z, coarsest?));
+        cameras.iter().filter_map(of_camera)
+    });
+    boxes.reduce(around)
+}
+
 /// A box around all that a camera shows of the ground at this height in pixels finer than
 /// `coarsest` metres.
 fn box_of_shown(camera: &Camera, z: f64, coarsest: f64) -> [f64; 4] {
@@ -198,6 +209,18 @@ mod tests {
             assert!((found - planted).abs() < 3.0, "{found} for {planted}");
         }
         assert!(shown_places(&cameras[..2], 0.0).is_empty());
+    }
+
+    #[test]
+    fn the_box_of_views_holds_all_that_one_shows() {
+        let cameras = [0.0, 30.0].map(|x| above(x, 5.0));
+        let cameras: Vec<&Camera> = cameras.iter().collect();
+        // From 100 m above, and from 50 m above.
+        let found = box_of_views(&cameras, [0.0, 50.0]).unwrap();
+        assert_eq!(found, [-50.0, -45.0, 80.0, 55.0]);
+        let found = box_of_views(&cameras, [50.0, 50.0]).unwrap();
+        assert_eq!(found, [-25.0, -20.0, 55.0, 30.0]);
+        assert_eq!(box_of_views(&[], [0.0, 0.0]), None);
     }
 
     #[test]
