@@ -12,6 +12,7 @@ import os
 import pathlib
 import random
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -177,8 +178,9 @@ def main():
             if ended == 0 and killer.left == 0:
                 break
             if ended == 0:
-                # There was not enough to kill: a tile is made anew.
+                # There was not enough to kill: a tile and the model are made anew.
                 killer.random.choice(sorted((work / "plan" / "parts").glob("*.part"))).unlink()
+                shutil.rmtree(work / "model")
             elif len(killer.met) == kills_before:
                 sys.exit(f"Snakemake failed:\n{log_path.read_text()}")
         # The first try asked for the least, 200 MB, the second one for twice that.
