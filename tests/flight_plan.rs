@@ -44,8 +44,12 @@ fn options(ground_z: Option<f64>, reduction: Option<u32>) -> LoadOptions {
     }
 }
 
-/// Tiles and squares that are left out, of the command line.
-type Divided = (Vec<[f64; 4]>, Vec<[f64; 4]>);
+/// Tiles, and what is left out: how many squares, and their area.
+type Divided = (Vec<[f64; 4]>, usize, f64);
+
+fn area(boxes: &[[f64; 4]]) -> f64 {
+    boxes.iter().map(|[a, b, c, d]| (c - a) * (d - b)).sum()
+}
 
 fn of_command_line(files: &[InputFile], options: &LoadOptions, tile_m: f64) -> Divided {
     let source = BlockSource {
@@ -60,7 +64,8 @@ fn of_command_line(files: &[InputFile], options: &LoadOptions, tile_m: f64) -> D
         BlockPlan::from_json(&plan.to_json().unwrap()).unwrap(),
         plan
     );
-    (plan.tiles.iter().map(|t| t.core).collect(), plan.left_out)
+    let tiles = plan.tiles.iter().map(|t| t.core).collect();
+    (tiles, plan.left_out.len(), area(&plan.left_out))
 }
 
 fn of_page(
@@ -78,7 +83,7 @@ fn of_page(
     let cores: Vec<[f64; 4]> = plan.tiles.iter().map(|t| t.core).collect();
     let worked_off: Vec<[f64; 4]> = area.tiles().iter().map(|t| t.core).collect();
     assert_eq!(cores, worked_off);
-    (cores, plan.left_out)
+    (cores, plan.squares_left_out, area(&plan.left_out))
 }
 
 #[test]
@@ -86,11 +91,11 @@ fn an_l_shaped_flight_has_the_same_tiles_on_the_page_as_on_the_command_line() {
     let files = l_shaped_flight();
     let stated = options(Some(0.0), None);
     for tile_m in [60.0, 120.0] {
-        let (tiles, left_out) = of_command_line(&files, &stated, tile_m);
-        assert_eq!(
-            of_page(&files, &stated, None, tile_m),
-            (tiles.clone(), left_out.clone())
-        );
+        let on_command_line = of_command_line(&files, &stated, tile_m);
+        assert_eq!(of_page(&files, &stated, None, tile_m), on_command_line);
+        let (tiles, count, _) = on_command_line;
+        let plan = FlightPlan::new(&files, &stated, None, tile_m).unwrap();
+        let left_out = plan.left_out;
         let holds = |squares: &[[f64; 4]], x: f64, y: f64| {
             (squares.iter()).any(|&[x0, y0, x1, y1]| x0 <= x && x < x1 && y0 <= y && y < y1)
         };
@@ -102,7 +107,7 @@ fn an_l_shaped_flight_has_the_same_tiles_on_the_page_as_on_the_command_line() {
             assert!(holds(&left_out, x, y), "{x} {y}");
         }
         // 7 x 7 squares less two columns and two rows.
-        assert_eq!(left_out.len(), 25);
+        assert_eq!(count, 25);
     }
 }
 
@@ -113,9 +118,9 @@ fn a_stated_region_has_all_its_squares() {
         roi: Some([0.0, 0.0, 300.0, 300.0]),
         ..options(Some(0.0), None)
     };
-    let (tiles, left_out) = of_page(&files, &region, None, 60.0);
-    assert_eq!((tiles.len(), left_out.len()), (25, 0));
-    assert_eq!((tiles, left_out), of_command_line(&files, &region, 60.0));
+    let all = of_page(&files, &region, None, 60.0);
+    assert_eq!((all.0.len(), all.1), (25, 0));
+    assert_eq!(all, of_command_line(&files, &region, 60.0));
     // What no three photographs show says so.
     let plan = FlightPlan::new(&files, &region, None, 60.0).unwrap();
     let unseen = plan.tiles.iter().filter_map(|tile| tile.left_out.as_ref());

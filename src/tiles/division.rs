@@ -74,8 +74,11 @@ pub struct FlightPlan {
     pub overview: FlightOverview,
     /// The tiles in the order in which they are worked off.
     pub tiles: Vec<TilePlan>,
-    /// The squares of the area that are left out: x0, y0, x1, y1, metres, world frame.
+    /// What is left out of the area, neighbouring squares of a row as one: x0, y0, x1, y1, metres,
+    /// world frame.
     pub left_out: Vec<[f64; 4]>,
+    /// So many squares that is.
+    pub squares_left_out: usize,
     /// Why they are.
     pub why_left_out: &'static str,
     /// Why there are no tiles; null where there are.
@@ -137,11 +140,27 @@ impl FlightPlan {
         Ok(Self {
             tiles,
             overview,
-            left_out,
+            squares_left_out: left_out.len(),
+            left_out: rows_of(left_out),
             why_left_out: WHY_LEFT_OUT,
             problem,
         })
     }
+}
+
+/// Neighbouring squares of a row as one: of a long flight there are a hundred thousand.
+fn rows_of(mut squares: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
+    squares.sort_by(|a, b| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0])));
+    let mut rows: Vec<[f64; 4]> = Vec::new();
+    for square in squares {
+        match rows.last_mut() {
+            Some(last) if [last[2], last[1], last[3]] == [square[0], square[1], square[3]] => {
+                last[2] = square[2];
+            }
+            _ => rows.push(square),
+        }
+    }
+    rows
 }
 
 impl TilePlan {
@@ -183,5 +202,25 @@ impl TilePlan {
         planned.left_out = planned.left_out.filter(|_| planned.views.is_empty());
         planned.memory_mb += filled_mb(&planned.views);
         planned
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_squares_of_a_row_are_one() {
+        let square = |x: f64, y: f64| [x, y, x + 60.0, y + 60.0];
+        let places = [(60.0, 0.0), (0.0, 60.0), (0.0, 0.0), (180.0, 0.0)];
+        let rows = rows_of(places.map(|(x, y)| square(x, y)).to_vec());
+        assert_eq!(
+            rows,
+            [
+                [0.0, 0.0, 120.0, 60.0],
+                square(180.0, 0.0),
+                square(0.0, 60.0)
+            ]
+        );
     }
 }

@@ -539,6 +539,7 @@ export class Session implements CoreSession {
       },
       tiles: [{ core: area, region: area, views, memory_mb: 10, left_out: null }],
       left_out: [],
+      squares_left_out: 0,
       why_left_out: "fewer than three photographs show its ground",
       problem: null,
     };

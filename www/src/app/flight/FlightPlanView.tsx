@@ -186,7 +186,7 @@ function regionText(region: Region | null): string {
   return runOptions.value.roi === null ? `${size}, all that three photographs show` : size;
 }
 
-function tilesText({ tiles, left_out, why_left_out }: FlightPlan, used: number): string {
+function tilesText({ tiles, squares_left_out, why_left_out }: FlightPlan, used: number): string {
   const lacking = tiles.filter(({ left_out }) => isOfMemory(left_out)).length;
   const unseen = tiles.length - used - lacking;
   const parts = [String(used)];
@@ -196,8 +196,8 @@ function tilesText({ tiles, left_out, why_left_out }: FlightPlan, used: number):
   if (lacking > 0) {
     parts.push(`${lacking} too large for the memory: choose a smaller share of the photographs' size`);
   }
-  if (left_out.length > 0) {
-    parts.push(`${counted(left_out.length, "squares")} left out: ${why_left_out}`);
+  if (squares_left_out > 0) {
+    parts.push(`${counted(squares_left_out, "squares")} left out: ${why_left_out}`);
   }
   return parts.join("; ");
 }

@@ -115,8 +115,9 @@ function shadingOf({ columns, rows, counts }: Overlap): string {
   return canvas.toDataURL();
 }
 
-/** The squares that no tile reconstructs. One path: of a long flight there are thousands. */
-function LeftOutSquares({ plan: { left_out, why_left_out }, frame }: { plan: FlightPlan; frame: PlanFrame }) {
+/** What no tile reconstructs. */
+function LeftOutSquares({ plan, frame }: { plan: FlightPlan; frame: PlanFrame }) {
+  const { left_out, squares_left_out, why_left_out } = plan;
   if (left_out.length === 0) {
     return null;
   }
@@ -125,7 +126,7 @@ function LeftOutSquares({ plan: { left_out, why_left_out }, frame }: { plan: Fli
     return `M${x.toFixed(1)} ${y.toFixed(1)}h${width.toFixed(1)}v${height.toFixed(1)}h${(-width).toFixed(1)}z`;
   });
   return (
-    <path class="squares-left-out" data-count={left_out.length} d={outline.join("")}>
+    <path class="squares-left-out" data-count={squares_left_out} d={outline.join("")}>
       <title>{`Left out: ${why_left_out}`}</title>
     </path>
   );
