@@ -1,5 +1,5 @@
-//! Writes the synthetic scenes as images and orientation, a folder each, and one of them with a point
-//! cloud besides:
+//! Writes the synthetic scenes as images and orientation, a folder each, and one of them with a
+//! point cloud besides:
 //! `cargo run --release --example synthetic -- FOLDER`.
 
 #[path = "../tests/common/clouds.rs"]

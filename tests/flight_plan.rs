@@ -47,7 +47,7 @@ fn options(ground_z: Option<f64>, reduction: Option<u32>) -> LoadOptions {
 /// Tiles, and what is left out: how many squares, and their area.
 type Divided = (Vec<[f64; 4]>, usize, f64);
 
-fn area(boxes: &[[f64; 4]]) -> f64 {
+fn square_metres(boxes: &[[f64; 4]]) -> f64 {
     boxes.iter().map(|[a, b, c, d]| (c - a) * (d - b)).sum()
 }
 
@@ -65,7 +65,7 @@ fn of_command_line(files: &[InputFile], options: &LoadOptions, tile_m: f64) -> D
         plan
     );
     let tiles = plan.tiles.iter().map(|t| t.core).collect();
-    (tiles, plan.left_out.len(), area(&plan.left_out))
+    (tiles, plan.left_out.len(), square_metres(&plan.left_out))
 }
 
 fn of_page(
@@ -83,7 +83,7 @@ fn of_page(
     let cores: Vec<[f64; 4]> = plan.tiles.iter().map(|t| t.core).collect();
     let worked_off: Vec<[f64; 4]> = area.tiles().iter().map(|t| t.core).collect();
     assert_eq!(cores, worked_off);
-    (cores, plan.squares_left_out, area(&plan.left_out))
+    (cores, plan.squares_left_out, square_metres(&plan.left_out))
 }
 
 #[test]

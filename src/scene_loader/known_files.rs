@@ -16,8 +16,8 @@ use crate::orientation::{FileKind, InputFile, POINT_CLOUD, detect};
 /// confirms nothing.
 const OWN_PROPERTY: &str = "\"lowest_roof_m\"";
 
-/// Points are of use this far around the region of interest, or what the views show, metres. Assumption: roofs begin inside
-/// it and reach as far beyond.
+/// Points are of use this far around the region of interest, or what the views show, metres.
+/// Assumption: roofs begin inside it and reach as far beyond.
 const AROUND_M: f64 = 30.0;
 
 /// What each file is; what the options name as terrain or footprints is that.

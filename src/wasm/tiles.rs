@@ -74,9 +74,9 @@ impl Session {
         to_js(&ground_heights(&self.files, &load_options(&options)?))
     }
 
-    /// The tiles of `planFlight` with the same arguments, to be worked off: their cores, x0, y0, x1,
-    /// y1 each. `heights` are those of its overview; null measures them in files that are whole. Results
-    /// of an earlier run are dropped.
+    /// The tiles of `planFlight` with the same arguments, to be worked off: their cores, x0, y0,
+    /// x1, y1 each. `heights` are those of its overview; null measures them in files that are
+    /// whole. Results of an earlier run are dropped.
     #[wasm_bindgen(js_name = planTiles, unchecked_return_type = "[x0: number, y0: number, x1: number, y1: number][]")]
     pub fn plan_tiles(
         &mut self,
