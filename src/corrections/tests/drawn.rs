@@ -224,8 +224,8 @@ fn what_is_no_edge_in_a_photograph_says_why() {
     assert_eq!(found, wrong);
 }
 
-/// Every roof facet in one grey value of its own, as its photographs would show it.
-fn painted(scene: &Scene, truth: &SyntheticTruth) -> Scene {
+/// Every roof facet in one grey value, as its photographs would show it; they differ by a step.
+fn painted(scene: &Scene, truth: &SyntheticTruth, step: f32) -> Scene {
     let mut plain = scene.clone();
     for view in &mut plain.views {
         let image = |p: &Point3<f64>| view.camera.project(p).expect("seen");
@@ -234,7 +234,7 @@ fn painted(scene: &Scene, truth: &SyntheticTruth) -> Scene {
                 .iter()
                 .map(|p| Point3::new(image(p).x, image(p).y, 0.0))
                 .collect();
-            let grey = 0.35 + 0.15 * i as f32;
+            let grey = 0.35 + step * i as f32;
             let width = view.gray.width;
             for (k, value) in view.gray.data.iter_mut().enumerate() {
                 let at = Point2::new((k % width) as f64 + 0.5, (k / width) as f64 + 0.5);
@@ -251,7 +251,7 @@ fn painted(scene: &Scene, truth: &SyntheticTruth) -> Scene {
 #[test]
 fn the_halves_of_a_plain_roof_turn_to_their_eaves() {
     let (scene, truth) = gable_scene(320);
-    let (scene, right) = (painted(&scene, &truth), model_of(&truth));
+    let (scene, right) = (painted(&scene, &truth, 0.15), model_of(&truth));
     for facets in [[0, 1], [1, 0]] {
         let wrong = merged(&scene, &right, facets);
         for view in 0..scene.views.len() {
@@ -261,4 +261,25 @@ fn the_halves_of_a_plain_roof_turn_to_their_eaves() {
             assert!(turned < 1.5, "view {view}: {turned} degrees");
         }
     }
+}
+
+#[test]
+fn a_ridge_that_no_other_photograph_shows_lies_on_its_facet() {
+    let (scene, truth) = gable_scene(320);
+    let (scene, right) = (painted(&scene, &truth, 0.0), model_of(&truth));
+    let wrong = merged(&scene, &right, [0, 1]);
+    for view in 0..scene.views.len() {
+        let (found, trace) = in_scene(&scene, &wrong, &[drawn(&scene, view, &ridge(&truth))]);
+        assert_eq!(trace.outcomes, [None], "view {view}");
+        let line = trace.lines[0].expect("a line");
+        let own = &right.facets[0].plane;
+        let off = [line.p0, line.p1].map(|p| own.signed_distance(&p).abs());
+        assert!(off[0].max(off[1]) < 0.01, "view {view}: {off:?}");
+        // As well as it is drawn, two pixels off.
+        let turned = turned_deg(&found, &right);
+        assert!(turned < 5.0, "view {view}: {turned} degrees");
+    }
+    // The facets without the step between them are one: nothing turns.
+    let again = in_scene(&scene, &right, &[drawn(&scene, 0, &ridge(&truth))]);
+    assert_eq!(again.0, right);
 }

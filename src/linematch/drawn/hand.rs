@@ -3,12 +3,44 @@
 use nalgebra::{Matrix2, Point2};
 
 use super::super::nview::most_of_edge;
-use super::DrawnEdge;
 use super::steps::{CHANNELS, step_across};
-use crate::geometry::Segment2;
+use crate::camera::Camera;
+use crate::geometry::{Plane, Segment2, Segment3};
+use crate::ids::ViewId;
 use crate::lines2d::{GuidedEdge, SegmentKind};
 use crate::math::exp;
-use crate::scene::View;
+use crate::scene::{Scene, View};
+
+/// An edge as a hand draws it in a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrawnEdge {
+    /// The view.
+    pub view: ViewId,
+    /// Between its ends, pixels.
+    pub segment: Segment2,
+    /// Standard deviation of the ends across the edge, pixels.
+    pub sigma_px: f64,
+}
+
+impl DrawnEdge {
+    /// It on a plane, where the view shows it, or else where it is drawn; `None` where its rays do
+    /// not meet the plane.
+    pub fn on_plane(&self, scene: &Scene, plane: &Plane) -> Option<Segment3> {
+        let own = own_edge(scene.view(self.view), self);
+        let snapped = between(&own.segment, &self.segment);
+        on_plane(scene.camera(self.view), &snapped, plane)
+    }
+}
+
+/// An edge of an image on a plane.
+pub(super) fn on_plane(camera: &Camera, edge: &Segment2, plane: &Plane) -> Option<Segment3> {
+    let at = |x: &Point2<f64>| {
+        let ray = camera.ray(x);
+        let t = -plane.signed_distance(&camera.center) / plane.normal.dot(&ray);
+        (t.is_finite() && t > 0.0).then(|| camera.center + ray * t)
+    };
+    Some(Segment3::new(at(&edge.p0)?, at(&edge.p1)?))
+}
 
 /// Either end is moved by up to so many standard deviations of the hand.
 const REACH_SIGMAS: f64 = 2.0;

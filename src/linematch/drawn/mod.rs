@@ -16,53 +16,20 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
+pub use hand::DrawnEdge;
 pub(crate) use steps::shown_along;
 
-use nalgebra::Point2;
-
 use super::nview::{CompletedLine, complete_from_edges};
-use crate::camera::Camera;
 use crate::geometry::{Plane, Segment2, Segment3};
 use crate::ids::ViewId;
 use crate::lines3d::{Line3d, LineOrigin, ProjectedLine};
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
 
-/// An edge as a hand draws it in a view.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DrawnEdge {
-    /// The view.
-    pub view: ViewId,
-    /// Between its ends, pixels.
-    pub segment: Segment2,
-    /// Standard deviation of the ends across the edge, pixels.
-    pub sigma_px: f64,
-}
-
-impl DrawnEdge {
-    /// It on a plane, where the view shows it, or else where it is drawn; `None` where its rays do
-    /// not meet the plane.
-    pub fn on_plane(&self, scene: &Scene, plane: &Plane) -> Option<Segment3> {
-        let own = hand::own_edge(scene.view(self.view), self);
-        let snapped = hand::between(&own.segment, &self.segment);
-        on_plane(scene.camera(self.view), &snapped, plane)
-    }
-}
-
-/// An edge of an image on a plane.
-fn on_plane(camera: &Camera, edge: &Segment2, plane: &Plane) -> Option<Segment3> {
-    let at = |x: &Point2<f64>| {
-        let ray = camera.ray(x);
-        let t = -plane.signed_distance(&camera.center) / plane.normal.dot(&ray);
-        (t.is_finite() && t > 0.0).then(|| camera.center + ray * t)
-    };
-    Some(Segment3::new(at(&edge.p0)?, at(&edge.p1)?))
-}
-
 /// The line, between heights in metres, of an edge drawn in a view; its ends are those that were
-/// drawn. Besides the lines that the other views make likely it is sought on the `planes` of
-/// roofs. `None` where fewer than two other views show an edge along a
-/// line that the views together determine.
+/// drawn. Besides the lines that the other views make likely it is sought on the `planes` of roofs.
+/// `None` where fewer than two other views show an edge along a line that the views together
+/// determine.
 pub fn line_of_drawn(
     scene: &Scene,
     drawn: &DrawnEdge,
@@ -72,7 +39,7 @@ pub fn line_of_drawn(
     let view = drawn.view;
     let own = hand::own_edge(scene.view(view), drawn);
     let snapped = hand::between(&own.segment, &drawn.segment);
-    let on_roof = (planes.iter()).filter_map(|p| on_plane(scene.camera(view), &snapped, p));
+    let on_roof = (planes.iter()).filter_map(|p| hand::on_plane(scene.camera(view), &snapped, p));
     let beam = beam::candidates(scene, view, &snapped, z_range, params.max_slope_deg);
     let starts: Vec<Segment3> = on_roof.chain(beam).collect();
     let fitted = crate::execution::map(&starts, |_, start| {
