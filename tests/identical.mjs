@@ -110,7 +110,7 @@ function correctionsOf({ CityObjects, transform: { scale, translate }, vertices 
     const [from] = [...second.corners].sort((a, b) => a[2] - b[2]);
     return [
         { correction: "merge", facet: facetOf(face), with: facetOf(other) },
-        { correction: "add_edge", photograph: view.name, pixels },
+        { correction: "add_edge", photograph: view.name, pixels, sigma_px: 3 },
         { correction: "set_slope", facet: facetOf(first), slope_deg: first.slopeDeg + 2 },
         { correction: "move_corner", from, to: from.map((x, i) => x + [0.2, 0.1, 0.05][i]) },
         { correction: "set_ground", building: facetOf(first).at, height: from[2] - 30 },
