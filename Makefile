@@ -8,6 +8,7 @@
 #   make identical  the demo and the synthetic scenes natively and in wasm, compared byte for byte
 #   make golden     rewrite what the tests expect to be found in the synthetic scenes (tests/golden)
 #   make score      all scenes against their truth; rewrites the tables of docs/results.md
+#   make kills      a block under Snakemake, KILLS (20) processes killed at random moments by SEED (1): the same bytes
 #   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
 #   make jury       all scenes many times over, changed a little each time; rewrites its tables there
 #   make judge      SEEDS (as "518 to 530") of random scenes that chose nothing; BEFORE=PROGRAM compares in pairs
@@ -19,7 +20,7 @@
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: demo test build lint identical golden score jury judge calibrate bench fuzz native setup clean
+.PHONY: demo test build lint identical golden score jury judge calibrate bench kills fuzz native setup clean
 
 # Small programs of our own on the crates of wasm-bindgen and wasm-pack, kept for all clones that have the same ones.
 CACHE := $(or $(RIDGELINE_CACHE),$(HOME)/.cache/ridgeline)
@@ -87,6 +88,10 @@ bench: native $(PACKAGE)
 	$(PYTHON) tests/bench.py --binary target/release/ridgeline $(if $(BEFORE),--before $(BEFORE)) \
 		$(if $(SCENE),--scene $(SCENE)) --rounds $(or $(ROUNDS),5) --scenes "$${SCENES:-../shared/scenes}" \
 		--flight "$${FLIGHT:-../shared/flights/sheffield}"
+
+kills: native
+	cargo build --release --example synthetic
+	$(PYTHON) tests/cluster.py --binary target/release/ridgeline --kills $(or $(KILLS),20) --seed $(or $(SEED),1)
 
 fuzz:
 	RIDGELINE_FUZZ_SECONDS=$${FUZZ_SECONDS:-600} cargo test --release --test fuzz -- --nocapture --test-threads 1

@@ -1,5 +1,5 @@
 // Runs scenes, the first two by every method and the first one with corrections by hand, through the wasm Session in Node and through the native command line, and compares
-// every file byte for byte (report.json without its part `seconds`). So is the orientation of drawn photographs with
+// every file byte for byte (report.json without its part `seconds`). One scene has a point cloud (LAZ) besides. So is the orientation of drawn photographs with
 // ground control points, by two orienters that divide the pairs. What model.glb is wrong in, the validator of glTF's makers says.
 //
 //   node tests/identical.mjs BINARY [SCENE]     by default the demo's, and the synthetic scenes of the tests, which the
@@ -110,7 +110,7 @@ function correctionsOf({ CityObjects, transform: { scale, translate }, vertices 
     const [from] = [...second.corners].sort((a, b) => a[2] - b[2]);
     return [
         { correction: "merge", facet: facetOf(face), with: facetOf(other) },
-        { correction: "add_edge", photograph: view.name, pixels },
+        { correction: "add_edge", photograph: view.name, pixels, sigma_px: 3 },
         { correction: "set_slope", facet: facetOf(first), slope_deg: first.slopeDeg + 2 },
         { correction: "move_corner", from, to: from.map((x, i) => x + [0.2, 0.1, 0.05][i]) },
         { correction: "set_ground", building: facetOf(first).at, height: from[2] - 30 },
@@ -134,7 +134,14 @@ async function compareRuns(scene, method, corrections) {
         console.log(`${basename(scene)}, ${method}: ${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
     }
     const bad = [...differing, ...(await wrongIn(native.get("model.glb")))];
-    return { bad, report: JSON.parse(native.get("report.json").toString()) };
+    const report = JSON.parse(native.get("report.json").toString());
+    if (cloudOf(scene) !== undefined && ["lines", "combined"].includes(method)) {
+        // Otherwise nothing of it would have been compared.
+        const { verdict, planes } = report.known?.point_cloud ?? {};
+        console.log(`${basename(scene)}: the point cloud is ${verdict}, with ${planes?.length ?? 0} planes`);
+        if (!(planes?.length > 0)) bad.push("point cloud");
+    }
+    return { bad, report };
 }
 
 // The same for photographs alone.
@@ -191,12 +198,19 @@ async function wrongIn(glb) {
     return worst.map(({ code }) => code);
 }
 
+// The name of the point cloud in a scene's folder.
+function cloudOf(scene) {
+    return readdirSync(scene).find((name) => /\.la[sz]$/i.test(name));
+}
+
 function runNative(scene, method, corrections = []) {
     const [out, beside] = [0, 1].map(() => mkdtempSync(join(tmpdir(), "ridgeline-")));
     try {
         const list = join(beside, "corrections.json");
         writeFileSync(list, JSON.stringify(corrections));
-        run(binary, ["reconstruct", scene, "--out", out, "--method", method, "--corrections", list]);
+        const cloud = cloudOf(scene);
+        const known = cloud === undefined ? [] : ["--point-cloud", join(scene, cloud)];
+        run(binary, ["reconstruct", scene, "--out", out, "--method", method, "--corrections", list, ...known]);
         return new Map(readdirSync(out).map((name) => [name, readFileSync(join(out, name))]));
     } finally {
         for (const folder of [out, beside]) rmSync(folder, { recursive: true });
@@ -207,7 +221,11 @@ async function runWasm(scene, method, corrections = []) {
     const { session } = await openSession();
     addFiles(session, scene);
     session.setParams({ method, corrections });
-    session.load({});
+    // Where the command line puts it.
+    const cloud = cloudOf(scene);
+    const known = cloud === undefined ? {} : { pointCloud: `known/${cloud}` };
+    if (cloud !== undefined) session.addFile(known.pointCloud, readFileSync(join(scene, cloud)));
+    session.load(known);
     for (const stage of session.chosenStages()) {
         const start = performance.now();
         const { counts } = session.runStage(stage, () => {});

@@ -76,7 +76,7 @@ function prepareHelpers(stage, views, earlier) {
 }
 
 function runTiles(session, tileM) {
-    for (const index of session.planTiles(options, tileM).keys()) {
+    for (const index of session.planTiles(options, tileM, null).keys()) {
         session.takeTile(session.runTile(index, () => {}));
     }
     session.joinTiles();

@@ -3,8 +3,11 @@
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, clippy::disallowed_methods)]
 
+mod common;
+
 use std::sync::Arc;
 
+use common::clouds::{is_inside, las, plan, points};
 use nalgebra::{Point2, Point3, Vector2};
 use ridgeline::dense::{CloudComparison, CloudVerdict};
 use ridgeline::ids::ProposalOrigin;
@@ -17,40 +20,6 @@ use ridgeline::scene_loader::{LoadOptions, load_scene};
 use ridgeline::synthetic::{SyntheticTruth, gable_scene, to_files};
 
 const SIZE_PX: u32 = 400;
-
-fn is_inside(ring: &[Point2<f64>], p: &Point2<f64>) -> bool {
-    let sides = (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()]));
-    sides.fold(false, |inside, (a, b)| {
-        let crosses =
-            (a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x;
-        inside != crosses
-    })
-}
-
-fn plan(ring: &[Point3<f64>]) -> Vec<Point2<f64>> {
-    ring.iter().map(|p| p.xy()).collect()
-}
-
-/// Nine points a square metre of roofs and ground, with errors of some centimetres.
-fn points(truth: &SyntheticTruth) -> Vec<Point3<f64>> {
-    let mut state = 1u32;
-    let mut next = move || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        f64::from(state >> 8) / f64::from(1u32 << 24)
-    };
-    let mut all = Vec::new();
-    for (i, j) in (-75..75).flat_map(|i| (-75..75).map(move |j| (i, j))) {
-        let x = (f64::from(i) + next()) / 3.0;
-        let y = (f64::from(j) + next()) / 3.0;
-        let over = |(plane, ring): &(ridgeline::geometry::Plane, Vec<Point3<f64>>)| {
-            is_inside(&plan(ring), &Point2::new(x, y)).then(|| plane.z_at(x, y))
-        };
-        let roofs = truth.facets.iter().filter_map(over);
-        let z = roofs.fold(truth.ground_z, f64::max);
-        all.push(Point3::new(x, y, z + 0.1 * (next() - 0.5)));
-    }
-    all
-}
 
 fn cloud(points: &[Point3<f64>], by: [f64; 3]) -> Option<Arc<PointCloud>> {
     let moved = points
@@ -224,30 +193,6 @@ fn clouds_of_few_points_do_nothing() {
     }
 }
 
-/// A LAS file of point format 0; points of the height of the ground are classified as that.
-fn las(points: &[Point3<f64>], is_ground: impl Fn(&Point3<f64>) -> bool) -> Vec<u8> {
-    const SCALE: f64 = 0.001;
-    let mut bytes = vec![0; 227];
-    let mut put = |at: usize, value: &[u8]| bytes[at..at + value.len()].copy_from_slice(value);
-    put(0, b"LASF");
-    put(24, &[1, 2]);
-    put(94, &227u16.to_le_bytes());
-    put(96, &227u32.to_le_bytes());
-    put(105, &20u16.to_le_bytes());
-    put(107, &(points.len() as u32).to_le_bytes());
-    for axis in 0..3 {
-        put(131 + 8 * axis, &SCALE.to_le_bytes());
-    }
-    for p in points {
-        for v in p.iter() {
-            bytes.extend(((v / SCALE).round() as i32).to_le_bytes());
-        }
-        let class = if is_ground(p) { 2 } else { 1 };
-        bytes.extend([0, 0, 0b1001, class, 0, 0, 0, 0]);
-    }
-    bytes
-}
-
 #[test]
 fn a_file_among_the_photographs_is_terrain_and_roofs_unless_it_has_no_ground() {
     let (scene, truth) = gable_scene(SIZE_PX);
@@ -303,6 +248,39 @@ fn a_file_among_the_photographs_is_terrain_and_roofs_unless_it_has_no_ground() {
         ..LoadOptions::default()
     };
     assert!(loaded(las(&all, is_ground), &text).is_err());
+}
+
+#[test]
+fn of_a_large_cloud_only_what_the_photographs_show_is_kept() {
+    let (scene, truth) = gable_scene(SIZE_PX);
+    let mut all = points(&truth);
+    let here = all.len();
+    // A grid of points over square kilometres around.
+    let far = (-40..=40).flat_map(|i| (-40..=40).map(move |j| [i, j].map(|n| 50.0 * f64::from(n))));
+    all.extend(far.map(|[x, y]| Point3::new(x, y, truth.ground_z)));
+    let kept = |roi: Option<[f64; 4]>| {
+        let mut files = files(&scene);
+        files.push(InputFile::new("cloud.las", las(&all, |_| false)));
+        let options = LoadOptions {
+            roi,
+            ..LoadOptions::default()
+        };
+        let loaded = load_scene(&files, &options).unwrap();
+        let cloud = loaded.known.point_cloud.as_ref().unwrap();
+        let reach = |p: &Point3<f32>| {
+            let world = p.cast::<f64>() + loaded.origin;
+            world.x.abs().max(world.y.abs())
+        };
+        let reach = cloud.points.iter().map(reach).fold(0.0, f64::max);
+        (cloud.points.len(), reach)
+    };
+    // The house's frames show some tens of metres of ground, and 30 m around them may count.
+    let (count, reach) = kept(None);
+    assert!(count > here / 3 && count < here + 200, "{count} of {here}");
+    assert!(reach > 30.0 && reach < 200.0, "{reach}");
+    // A region of interest bounds it further.
+    let (_, reach) = kept(Some([-5.0, -5.0, 5.0, 5.0]));
+    assert!(reach < 35.01, "{reach}");
 }
 
 #[test]

@@ -54,8 +54,9 @@ pub(super) fn plan(args: &PlanArgs) -> Result<(), Failure> {
     let shown = plan.tiles.iter().filter(|t| t.memory_mb > 0).count();
     let most = plan.tiles.iter().map(|t| t.memory_mb).max().unwrap_or(0);
     println!(
-        "{} tiles, {shown} that the views show, at most {most} MB of memory each",
-        plan.tiles.len()
+        "{} tiles, {shown} that the views show, at most {most} MB of memory each{}",
+        plan.tiles.len(),
+        plan.left_out_in_words()
     );
     println!(
         "written to {}; go on with: ridgeline tile {} K, K from 1 to {}, then: ridgeline join {} --out DIR",

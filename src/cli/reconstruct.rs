@@ -42,7 +42,7 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         params.method = method.into();
     }
     if let Some(tile_m) = args.tile {
-        let area = Area::plan(&mut input, &options, &params, tile_m);
+        let area = Area::plan(&mut input, &options, None, &params, tile_m);
         let area = area.map_err(refuse)?;
         return tiles::reconstruct_tiles(area, &mut input, &args.out, &seen);
     }
@@ -56,7 +56,7 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     if is_flight && !options.apply_fix && args.project.is_none() {
         refuse_corrections(&params).map_err(refuse)?;
         // What shows no area that three views share is told by loading it.
-        if let Ok(area) = Area::plan(&mut input, &options, &params, CELL_M) {
+        if let Ok(area) = Area::plan(&mut input, &options, None, &params, CELL_M) {
             return tiles::reconstruct_tiles(area, &mut input, &args.out, &seen);
         }
     }

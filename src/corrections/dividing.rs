@@ -5,21 +5,15 @@ use nalgebra::{Point2, Point3, Vector2};
 use super::draft::{At, Draft, DraftFacet};
 use super::outcome::NotApplied;
 use super::place::corners;
-use super::plan::Region;
+use super::plan::{BESIDE_M, LEAST_M, Region};
 use super::shape::{LEAST_AREA_M2, OFF_M, turned, without};
+use super::slope::{Beside, Slope};
 use crate::geometry::{Plane, Segment3};
-use crate::lines3d::Line3d;
+use crate::lines3d::{Line3d, Side};
 use crate::model::{Facet, SideSupport, SideUncertainty};
-use crate::planes::HalfPlane;
 
 /// Planes and places farther apart than this many standard deviations are two.
 const DIFFERENT_SIGMAS: f64 = 3.0;
-/// A place this far beside a line in plan is on that side of it, metres: less than the width of
-/// any facet.
-const BESIDE_M: f64 = 0.01;
-
-/// An edge is longer, metres.
-const LEAST_M: f64 = 0.1;
 
 /// A stretch of a line in plan across a facet, from side to side.
 struct Chord {
@@ -30,14 +24,15 @@ struct Chord {
 }
 
 /// Divides the facets along a line, most of whose way across them is drawn, or else the one across
-/// which it is drawn farthest. On either side the half-plane that the photographs show takes the
-/// place of the facet's plane where it is another one; where they show none, the half turns about
-/// a line off its plane, nearest to its other corners. Returns the ends of the new edges.
+/// which it is drawn farthest. On either side the plane that the photographs show takes the place
+/// of the facet's plane where it is another one; where they show none, the half turns about a line
+/// off its plane, nearest to its other corners. Along a line without supports exactly one half must
+/// turn. Returns the ends of the new edges.
 pub(super) fn divide(
     draft: &mut Draft,
-    line: &Line3d,
-    sides: &[Option<HalfPlane>; 2],
+    beside: &Beside,
 ) -> Result<Vec<[Point3<f64>; 2]>, NotApplied> {
+    let line = beside.line;
     let mut chords: Vec<Chord> = (draft.facets())
         .filter_map(|(_, f)| chord(&f.facet, &line.segment))
         .collect();
@@ -55,7 +50,7 @@ pub(super) fn divide(
         // Dividing one facet changes the place of the others among them.
         let middle = in_plan(&line.segment, 0.5 * (stretch[0] + stretch[1]));
         let at = divided.facet_below(&middle).ok_or(NotApplied::NoFacet)?;
-        if let Some((facets, ends)) = halves(&divided, at, line, stretch, sides) {
+        if let Some((facets, ends)) = halves(&divided, at, beside, stretch) {
             divided.rebuild(at.house, facets)?;
             edges.push(ends);
         }
@@ -72,11 +67,10 @@ pub(super) fn divide(
 fn halves(
     draft: &Draft,
     at: At,
-    line: &Line3d,
+    beside: &Beside,
     stretch: [f64; 2],
-    sides: &[Option<HalfPlane>; 2],
 ) -> Option<(Vec<DraftFacet>, [Point3<f64>; 2])> {
-    let whole = draft.get(at);
+    let (whole, line) = (draft.get(at), beside.line);
     let own = &whole.facet.plane;
     let [from, to] = stretch.map(|t| at_corner(&in_plan(&line.segment, t), &whole.facet, line));
     let along = (to - from).try_normalize(LEAST_M)?;
@@ -93,33 +87,40 @@ fn halves(
     if regions.iter().any(|half| half.area() < LEAST_AREA_M2) {
         return None;
     }
-    let swept = [0, 1].map(|side| {
-        let parts = whole.over(regions[side]);
-        let plane = sides[side].as_ref().filter(|half_plane| {
-            parts
-                .iter()
-                .any(|part| is_other(half_plane, &part.facet, own, line))
-        });
-        plane.map(|half_plane| half_plane.plane)
-    });
-    // Where one half keeps the plane of the facet, the edge lies in that.
-    let keeps = |side: usize| sides[side].is_some() && swept[side].is_none();
-    let ends = [from, to].map(|p| match keeps(0) || keeps(1) {
-        true => own.lift(p.x, p.y),
-        false => Point3::new(p.x, p.y, height_above(&line.segment, &p)),
-    });
-    let edge = Segment3::new(ends[0], ends[1]);
-    let is_off = ends
+    let on_line = [from, to].map(|p| Point3::new(p.x, p.y, height_above(&line.segment, &p)));
+    let reach_m = DIFFERENT_SIGMAS * line.sigma_m.max(OFF_M);
+    let is_off = on_line
         .iter()
-        .any(|e| (own.z_at(e.x, e.y) - e.z).abs() > OFF_M);
+        .any(|e| (own.z_at(e.x, e.y) - e.z).abs() > reach_m);
+    let turned_to = [Side::Left, Side::Right].map(|side| {
+        let parts = whole.over(regions[side as usize]);
+        let area = |part: &&DraftFacet| part.facet.plan_area();
+        let half = &parts
+            .iter()
+            .max_by(|a, b| area(a).total_cmp(&area(b)))?
+            .facet;
+        let otherwise = match is_off {
+            true => turned(half, &Segment3::new(on_line[0], on_line[1])),
+            false => *own,
+        };
+        let slope = beside.slope(side, half, otherwise);
+        is_other(&slope, half, own, line).then_some(slope.plane)
+    });
+    // What no other photograph shows lies on the facet, and bounds what does not: one half.
+    let turning = turned_to.iter().flatten().count();
+    if line.supports.is_empty() && turning != 1 {
+        return None;
+    }
+    // Where one half keeps the plane of the facet, the edge lies in that.
+    let ends = match turning {
+        2 => on_line,
+        _ => [from, to].map(|p| own.lift(p.x, p.y)),
+    };
+    let edge = Segment3::new(ends[0], ends[1]);
     let mut facets = without(&draft.houses[at.house].facets, &[at.facet]);
     for side in [0, 1] {
         for mut part in whole.over(regions[side]) {
-            let plane = match swept[side] {
-                Some(plane) => Some(through(&edge, &plane)),
-                None if is_off => Some(turned(&part.facet, &edge)),
-                None => None,
-            };
+            let plane = turned_to[side].map(|plane| through(&edge, &plane));
             if let Some(plane) = plane {
                 part = part.on(plane);
                 part.facet.uncertainty = None;
@@ -137,11 +138,11 @@ fn halves(
     Some((facets, ends))
 }
 
-/// Is a half-plane at the corners of a facet another plane than its own?
-fn is_other(half_plane: &HalfPlane, facet: &Facet, own: &Plane, line: &Line3d) -> bool {
+/// Is a plane beside a line, at the corners of a facet, another one than that of the facet?
+fn is_other(slope: &Slope, facet: &Facet, own: &Plane, line: &Line3d) -> bool {
     facet.outer.iter().any(|p| {
-        let rise = half_plane.plane.z_at(p.x, p.y) - own.z_at(p.x, p.y);
-        let turn_m = half_plane.sigma_theta * line.segment.line_distance(p);
+        let rise = slope.plane.z_at(p.x, p.y) - own.z_at(p.x, p.y);
+        let turn_m = slope.sigma_theta * line.segment.line_distance(p);
         let sigma_m = (turn_m * turn_m + line.sigma_m * line.sigma_m).sqrt();
         rise.abs() > DIFFERENT_SIGMAS * sigma_m
     })

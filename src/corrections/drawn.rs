@@ -1,41 +1,107 @@
-//! An edge drawn in one photograph: its line in space, and the planes on both sides of it.
+//! An edge drawn in one photograph: its line in space.
 
-use nalgebra::{Matrix3, Point2, Point3, Vector3};
+use nalgebra::{Matrix3, Point2, Point3};
 
 use super::draft::{Draft, House};
 use super::outcome::NotApplied;
 use super::place::corners;
 use crate::camera::Camera;
-use crate::geometry::{Segment2, bounds};
-use crate::ids::{LineId, ViewId};
-use crate::linematch::line_of_drawn;
-use crate::lines3d::{Line3d, Side};
-use crate::params::{Acceptance, Params, SweepParams};
-use crate::planes::{HalfPlane, PointsOfInterest, SweepTrace, sweep_side};
-use crate::raster::Gray;
-use crate::scene::{Scene, Survey, View};
+use crate::geometry::{Plane, Segment2, bounds};
+use crate::ids::ViewId;
+use crate::linematch::{DrawnEdge, line_of_drawn};
+use crate::lines3d::{Line3d, LineOrigin};
+use crate::params::Params;
+use crate::scene::Scene;
 
-/// The line of an edge that is drawn in a photograph, between the ground and as high as a roof
-/// over the building can reach.
-pub(super) fn line_in_space(
-    scene: &Scene,
-    draft: &Draft,
-    photograph: &str,
-    pixels: &[Point2<f64>; 2],
-    params: &Params,
-) -> Result<Line3d, NotApplied> {
-    let drawn = Segment2::new(pixels[0], pixels[1]);
-    let named = scene.views.iter().position(|v| v.name == photograph);
-    let view = ViewId::from_index(named.ok_or(NotApplied::NoPhotograph)?);
-    let camera = scene.camera(view);
-    // What is no number is in no photograph.
-    let is_inside = [drawn.p0, drawn.p1].iter().all(|x| camera.contains(x, 0.0));
-    if !is_inside || drawn.length() < params.matching.min_edgels as f64 {
-        return Err(NotApplied::NotInPhotograph);
+/// Ends nearer to each other than so many standard deviations of the hand have no direction.
+const APART_SIGMAS: f64 = 4.0;
+/// No hand is more accurate, px.
+const LEAST_SIGMA_PX: f64 = 0.01;
+
+/// An edge that is drawn in a photograph, and where it is sought.
+pub(super) struct Sought {
+    edge: DrawnEdge,
+    /// Between the ground and as high as a roof over the building can reach, metres.
+    z_range: [f64; 2],
+    /// The plane of the facet in which it is drawn.
+    plane: Option<Plane>,
+}
+
+impl Sought {
+    pub(super) fn new(
+        scene: &Scene,
+        draft: &Draft,
+        photograph: &str,
+        (pixels, sigma_px): (&[Point2<f64>; 2], f64),
+        params: &Params,
+    ) -> Result<Self, NotApplied> {
+        let segment = Segment2::new(pixels[0], pixels[1]);
+        // What is no number is refused.
+        let is_plausible = sigma_px >= LEAST_SIGMA_PX;
+        if !is_plausible {
+            return Err(NotApplied::Implausible);
+        }
+        let named = scene.views.iter().position(|v| v.name == photograph);
+        let view = ViewId::from_index(named.ok_or(NotApplied::NoPhotograph)?);
+        let camera = scene.camera(view);
+        let is_inside = pixels.iter().all(|x| camera.contains(x, 0.0));
+        let least = (params.matching.min_edgels as f64).max(APART_SIGMAS * sigma_px);
+        if !is_inside || segment.length() < least {
+            return Err(NotApplied::NotInPhotograph);
+        }
+        Ok(Self {
+            z_range: heights(camera, draft, &segment).ok_or(NotApplied::NoBuilding)?,
+            plane: plane_below(scene, draft, view, &segment.midpoint()),
+            edge: DrawnEdge {
+                view,
+                segment,
+                sigma_px,
+            },
+        })
     }
-    let z_range = heights(camera, draft, &drawn).ok_or(NotApplied::NoBuilding)?;
-    let parameters = (&params.matching, &params.lines3d);
-    line_of_drawn(scene, view, &drawn, z_range, parameters).ok_or(NotApplied::NoLine)
+
+    /// Its line, as other photographs show it.
+    pub(super) fn matched(&self, scene: &Scene, params: &Params) -> Option<Line3d> {
+        let planes: Vec<Plane> = self.plane.into_iter().collect();
+        let places = (self.z_range, &planes[..]);
+        line_of_drawn(
+            scene,
+            &self.edge,
+            places,
+            (&params.matching, &params.lines3d),
+        )
+    }
+
+    /// Its line on the facet in which it is drawn, as well as the hand knows it: without supports.
+    pub(super) fn on_facet(&self, scene: &Scene) -> Option<Line3d> {
+        let segment = self.edge.on_plane(scene, &self.plane?)?;
+        let pixel_m = scene.camera(self.edge.view).ground_pixel(&segment.at(0.5));
+        let sigma_m = self.edge.sigma_px * pixel_m;
+        let covariance = Matrix3::identity() * (sigma_m * sigma_m);
+        Some(Line3d {
+            origin: LineOrigin::Matched,
+            segment,
+            sigma_m,
+            covariance: [covariance; 2],
+            probability: 1.0,
+            supports: Vec::new(),
+            contradiction: None,
+        })
+    }
+}
+
+/// The plane of the facet that a photograph shows at a place.
+fn plane_below(scene: &Scene, draft: &Draft, view: ViewId, at: &Point2<f64>) -> Option<Plane> {
+    let camera = scene.camera(view);
+    let ray = camera.ray(at);
+    let seen = draft.facets().filter_map(|(place, f)| {
+        let plane = f.facet.plane;
+        let depth = -plane.signed_distance(&camera.center) / plane.normal.dot(&ray);
+        let point = camera.center + ray * depth;
+        (depth > 0.0 && draft.facet_below(&point.xy()) == Some(place)).then_some((depth, plane))
+    });
+    let nearest = seen.min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.map(|(_, plane)| plane)
 }
 
 /// The heights between which an edge can lie that is drawn over some buildings of a photograph;
@@ -63,62 +129,4 @@ fn range_of(house: &House) -> [f64; 2] {
     let width = (high - low).min();
     let top = roof().fold(f64::NEG_INFINITY, |top, p| top.max(p.z));
     [house.building.ground_z, top + 0.5 * width]
-}
-
-/// Least probability of a half-plane beside a drawn edge: likelier there than not. No grouping
-/// follows, which tolerates few that are wrong, and without one the half keeps its plane.
-const LEAST_PROBABILITY: f64 = 0.5;
-
-/// The half-planes that the photographs show to the left and to the right of a line (B99 4.1).
-pub(super) fn sides(scene: &Scene, line: &Line3d, params: &Params) -> [Option<HalfPlane>; 2] {
-    let sweep = SweepParams {
-        acceptance: Acceptance::Posterior,
-        min_probability: LEAST_PROBABILITY,
-        ..params.sweep.clone()
-    };
-    let near = around(scene, line, 2.0 * sweep.depth_px);
-    let points = PointsOfInterest::detect_all(&near, &sweep);
-    let mut trace = SweepTrace::default();
-    [Side::Left, Side::Right].map(|side| {
-        let id = LineId::from_index(0);
-        sweep_side(&near, &points, id, line, side, &sweep, &mut trace)
-    })
-}
-
-/// The parts of the photographs around a line, without colours: the sweep looks no farther.
-fn around(scene: &Scene, line: &Line3d, margin_px: f64) -> Scene {
-    let part = |view: &View| {
-        let ends = [line.segment.p0, line.segment.p1].map(|p| view.camera.project(&p));
-        let [low, high] = bounds(ends.into_iter().flatten());
-        let whole = [view.gray.width, view.gray.height];
-        let pixel = |x: f64, axis: usize| x.clamp(0.0, whole[axis] as f64) as usize;
-        let [x0, y0] = [0, 1].map(|i| pixel(low[i] - margin_px, i));
-        let [x1, y1] = [0, 1].map(|i| pixel((high[i] + margin_px).ceil(), i));
-        (x0 < x1 && y0 < y1).then_some(())?;
-        let gray = Gray::from_fn(x1 - x0, y1 - y0, |x, y| view.gray.get(x0 + x, y0 + y));
-        let shift = Vector3::new(x0 as f64, y0 as f64, 0.0);
-        let moved = Matrix3::identity() - shift * Vector3::z().transpose();
-        Some(View {
-            name: view.name.clone(),
-            camera: Camera {
-                k: moved * view.camera.k,
-                width: gray.width as u32,
-                height: gray.height as u32,
-                ..view.camera.clone()
-            },
-            gray,
-            rgb: image::RgbImage::new(0, 0),
-            noise: view.noise,
-            red_blue: None,
-        })
-    };
-    Scene {
-        views: scene.views.iter().filter_map(part).collect(),
-        origin: scene.origin,
-        ground_z: scene.ground_z,
-        region: None,
-        known: Default::default(),
-        warnings: Vec::new(),
-        survey: Survey::default(),
-    }
 }

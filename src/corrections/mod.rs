@@ -7,7 +7,8 @@
 //! plan       regions of the plan: intersection, difference, union
 //! closing    the place of a deleted facet, divided between its neighbours
 //! shape      facets deleted, merged, split, added
-//! drawn      the line of an edge drawn in one photograph, and the planes beside it
+//! drawn      the line of an edge drawn in one photograph
+//! slope      how what lies beside it falls, by what the photographs show
 //! dividing   facets divided along such a line
 //! adjusting  corners, edges and slopes stated; the building is adjusted to them
 //! ```
@@ -25,6 +26,7 @@ mod outcome;
 mod place;
 mod plan;
 mod shape;
+mod slope;
 #[cfg(test)]
 mod tests;
 
@@ -35,7 +37,9 @@ use nalgebra::{Point3, Vector3};
 use self::adjusting::{Held, adjust, hold};
 use self::dividing::divide;
 use self::draft::Draft;
-use self::drawn::{line_in_space, sides};
+use self::drawn::Sought;
+use self::slope::Beside;
+use crate::geometry::Segment3;
 use crate::lines3d::Line3d;
 use crate::model::RoofModel;
 use crate::params::{Correction, FacetPlace, Params, RefineParams};
@@ -55,10 +59,14 @@ pub fn correct(
         let local = in_local_frame(correction, &scene.origin);
         let mut line = None;
         let outcome = match &local {
-            Correction::AddEdge { photograph, pixels } => {
-                line_in_space(scene, &draft, photograph, pixels, params).and_then(|found| {
-                    line = Some(found.segment);
-                    add_edge(scene, &mut draft, &found, &mut held, params)
+            Correction::AddEdge {
+                photograph,
+                pixels,
+                sigma_px,
+            } => {
+                let clicks = (pixels, *sigma_px);
+                Sought::new(scene, &draft, photograph, clicks, params).and_then(|sought| {
+                    add_edge(scene, &mut draft, &sought, &mut line, &mut held, params)
                 })
             }
             _ => apply(scene, &mut draft, &local, &held, &params.roof.refine),
@@ -110,16 +118,33 @@ fn apply(
     }
 }
 
-/// Divides what lies along a line that was found for a drawn edge.
+/// Divides what lies along the line of a drawn edge: that which other photographs show; where they
+/// show none, that on the facet in which it is drawn, if beyond it one half turns to them.
 fn add_edge(
     scene: &Scene,
     draft: &mut Draft,
-    line: &Line3d,
+    sought: &Sought,
+    line: &mut Option<Segment3>,
     held: &mut Vec<Held>,
     params: &Params,
 ) -> Result<(), NotApplied> {
-    let edges = divide(draft, line, &sides(scene, line, params))?;
-    held.extend(edges.iter().map(|ends| Held::edge(ends, line.sigma_m)));
+    let mut divided = |line: &Line3d| {
+        let beside = Beside {
+            scene,
+            line,
+            params,
+        };
+        let edges = divide(draft, &beside)?;
+        held.extend(edges.iter().map(|ends| Held::edge(ends, line.sigma_m)));
+        Ok(())
+    };
+    if let Some(found) = sought.matched(scene, params) {
+        *line = Some(found.segment);
+        return divided(&found);
+    }
+    let on_facet = sought.on_facet(scene).ok_or(NotApplied::NoLine)?;
+    divided(&on_facet).map_err(|_: NotApplied| NotApplied::NoLine)?;
+    *line = Some(on_facet.segment);
     Ok(())
 }
 

@@ -11,6 +11,11 @@ use crate::model::{Facet, inside};
 /// Parts of a region below this area are rounding, m^2: a sliver of 1 mm along an eave.
 const SLIVER_M2: f64 = 0.02;
 
+/// A place this far beside a line is on that side of it, metres: less than the width of any facet.
+pub(super) const BESIDE_M: f64 = 0.01;
+/// An edge is longer, metres.
+pub(super) const LEAST_M: f64 = 0.1;
+
 /// Rings in plan, filled by the even-odd rule.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Region(Vec<Vec<[f64; 2]>>);

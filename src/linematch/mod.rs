@@ -42,7 +42,8 @@ mod trace;
 mod triples;
 mod view_selection;
 
-pub use drawn::line_of_drawn;
+pub(crate) use drawn::shown_along;
+pub use drawn::{DrawnEdge, line_of_drawn};
 pub use line_strip::EdgelScore;
 pub(crate) use nview::EDGE_MARGIN_PX;
 pub use nview::MatchRejection;

@@ -12,6 +12,10 @@ use serde::{Deserialize, Serialize};
 /// few pixels of a survey.
 const BY_HAND_M: f64 = 0.02;
 
+/// Standard deviation of a click across an edge, pixels of the photograph. Assumption: a hand hits
+/// two pixels of a photograph that is shown at about its own size.
+const CLICK_PX: f64 = 2.0;
+
 /// A facet by its place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -127,6 +131,9 @@ pub enum Correction {
         /// Its ends, [x, y] in pixels of the photograph as it is shown, without the distortion of
         /// its lens: x right, y down, the centre of the first pixel at (0.5, 0.5).
         pixels: [Point2<f64>; 2],
+        /// How well a hand hits them: standard deviation across the edge, pixels of the photograph.
+        #[serde(default = "click_px")]
+        sigma_px: f64,
     },
     /// A facet is missing. What is below it loses its place.
     AddFacet {
@@ -144,6 +151,10 @@ pub enum Correction {
 
 fn by_hand_m() -> f64 {
     BY_HAND_M
+}
+
+fn click_px() -> f64 {
+    CLICK_PX
 }
 
 /// Corrections from JSON: an array of them.

@@ -71,6 +71,15 @@ pub(crate) fn whole_plan(files: &[InputFile], options: &LoadOptions) -> Plan {
     Plan::new(files, &everywhere, None)
 }
 
+/// The plan of the whole images as they are, whatever the options reduce them by.
+pub(crate) fn unreduced_plan(files: &[InputFile], options: &LoadOptions) -> Plan {
+    let unreduced = LoadOptions {
+        reduction: Some(1),
+        ..options.clone()
+    };
+    whole_plan(files, &unreduced)
+}
+
 /// The largest whole factor that leaves pixels as fine as roofs need; 1 where the photographs are
 /// small, or do not show how far away the ground is.
 fn reduction(files: &[InputFile], options: &LoadOptions) -> u32 {
@@ -105,11 +114,7 @@ pub(crate) fn pixel_in_the_middle<'a>(
 
 /// Height of the ground in the middle of a block, metres, local frame: as it is stated, or as
 /// photographs show it.
-pub(crate) fn ground_height(
-    files: &[InputFile],
-    options: &LoadOptions,
-    whole: &Plan,
-) -> Option<f64> {
+fn ground_height(files: &[InputFile], options: &LoadOptions, whole: &Plan) -> Option<f64> {
     let measured = || {
         let [low, high] = heights_near(files, whole, None)?;
         Some(0.5 * (low + high))
@@ -117,21 +122,18 @@ pub(crate) fn ground_height(
     (options.ground_z).map_or_else(measured, |z| Some(z - whole.origin.z))
 }
 
-/// The heights of the ground of an area as a few photographs in its middle show it, metres, world
-/// frame of the input.
-pub fn ground_heights(
-    files: &[InputFile],
-    options: &LoadOptions,
-    area: [f64; 4],
-) -> Option<[f64; 2]> {
-    let whole = whole_plan(files, options);
-    let heights = heights_near(files, &whole, Some(middle_of(area)))?;
+/// Lowest and highest ground as a few photographs in the middle of a block show it, metres, world
+/// frame of the input; the same however far photographs are reduced.
+pub fn ground_heights(files: &[InputFile], options: &LoadOptions) -> Option<[f64; 2]> {
+    let whole = unreduced_plan(files, options);
+    let heights = heights_near(files, &whole, None)?;
     Some(heights.map(|z| z + whole.origin.z))
 }
 
-/// Indices of the files in whose pixels [`ground_heights`] measures.
-pub fn ground_files(files: &[InputFile], options: &LoadOptions, area: [f64; 4]) -> Vec<usize> {
-    files_near(&whole_plan(files, options), Some(middle_of(area)))
+/// Indices of the files in whose pixels [`ground_heights`] measures. Of the files their first bytes
+/// suffice.
+pub fn ground_files(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
+    files_near(&unreduced_plan(files, options), None)
 }
 
 /// Indices of the files in whose pixels [`settled`] and

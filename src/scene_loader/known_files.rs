@@ -16,9 +16,9 @@ use crate::orientation::{FileKind, InputFile, POINT_CLOUD, detect};
 /// confirms nothing.
 const OWN_PROPERTY: &str = "\"lowest_roof_m\"";
 
-/// Points are of use this far around the region of interest, metres. Assumption: roofs begin inside
-/// it and reach as far beyond.
-const AROUND_REGION_M: f64 = 30.0;
+/// Points are of use this far around the region of interest, or what the views show, metres.
+/// Assumption: roofs begin inside it and reach as far beyond.
+const AROUND_M: f64 = 30.0;
 
 /// What each file is; what the options name as terrain or footprints is that.
 pub(super) fn kinds_of(files: &[InputFile], options: &LoadOptions) -> Vec<FileKind> {
@@ -33,12 +33,15 @@ pub(super) fn kinds_of(files: &[InputFile], options: &LoadOptions) -> Vec<FileKi
 }
 
 /// Reads what is known, for a scene with this system and origin; with what is to be said of it.
+/// `area` is the region of interest or the box of what the views show, local frame: of a point
+/// cloud only the surroundings are kept.
 pub(super) fn read_known(
     files: &[InputFile],
     kinds: &[FileKind],
     options: &LoadOptions,
     system: &WorldSystem,
     origin: Vector3<f64>,
+    area: Option<[f64; 4]>,
 ) -> Result<(Known, Vec<String>)> {
     let mut warnings = Vec::new();
     let of_kind = |kind: FileKind| {
@@ -95,12 +98,10 @@ pub(super) fn read_known(
         let accuracy_m = options
             .point_cloud_accuracy_m
             .unwrap_or(POINT_CLOUD_ACCURACY_M);
-        let local = |[x0, y0, x1, y1]: [f64; 4]| {
-            let low = [x0 - origin.x, y0 - origin.y].map(|v| v - AROUND_REGION_M);
-            let high = [x1 - origin.x, y1 - origin.y].map(|v| v + AROUND_REGION_M);
-            [low[0], low[1], high[0], high[1]]
+        let around = |[x0, y0, x1, y1]: [f64; 4]| {
+            [x0 - AROUND_M, y0 - AROUND_M, x1 + AROUND_M, y1 + AROUND_M]
         };
-        PointCloud::read(file, system, origin, accuracy_m, options.roi.map(local))
+        PointCloud::read(file, system, origin, accuracy_m, area.map(around))
     });
     let register = footprints.map(|file| {
         let accuracy_m = options.footprint_accuracy_m.unwrap_or(FOOTPRINT_ACCURACY_M);

@@ -1,14 +1,17 @@
 //! Loading a scene: plan, decoding, orientation check, corrections.
 
+use super::checks::camera_checks::check_cameras;
 use super::checks::check_and_correct;
 use super::decode::decode_all;
 use super::ground::{files_of_ground, files_of_settling, plan_scene, settled, whole_plan};
 use super::input::LoadOptions;
+use super::inspect::box_of_views;
 use super::known_files::read_known;
 use super::plan::Plan;
 use super::planned_view::PlannedView;
 use super::region;
 use crate::agreement::{AgreementReport, Finding};
+use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::known::{Known, WorldSystem};
 use crate::orientation::{FileSource, InputFile};
@@ -108,18 +111,30 @@ fn load_planned(plan: Plan, files: &[InputFile], options: &LoadOptions) -> Resul
         epsg: scene.survey.epsg,
         anchor: scene.survey.anchor,
     };
-    let known = read_known(files, &plan.kinds, options, &system, scene.origin)?;
-    scene.known = known.0;
-    scene.warnings.extend(known.1);
     let local = |[x0, y0, x1, y1]: [f64; 4]| {
         let [x, y] = [scene.origin.x, scene.origin.y];
         [x0 - x, y0 - y, x1 - x, y1 - y]
     };
     scene.region = options.roi.map(local);
+    let area = scene.region.or_else(|| area_of_views(&scene));
+    let known = read_known(files, &plan.kinds, options, &system, scene.origin, area)?;
+    scene.known = known.0;
+    scene.warnings.extend(known.1);
     if let (Some(roi), true) = (options.roi, plan.is_cut_later) {
         region::cut_scene(&mut scene, roi, options.max_views)?;
     }
     Ok(scene)
+}
+
+/// The box of what the views show, local frame; `None` where they do not tell how high the ground
+/// is.
+fn area_of_views(scene: &Scene) -> Option<[f64; 4]> {
+    let named: Vec<(&str, &Camera)> = (scene.views.iter())
+        .map(|view| (&*view.name, &view.camera))
+        .collect();
+    let heights = check_cameras(&named, scene.ground_z).heights?;
+    let cameras: Vec<&Camera> = scene.views.iter().map(|view| &view.camera).collect();
+    box_of_views(&cameras, heights)
 }
 
 /// Do the images agree, each with some others?

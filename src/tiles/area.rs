@@ -8,8 +8,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use super::division::Division;
 use super::join::{CellPart, Joined, join};
-use super::tile::{Cell, Tile, plan_tiles};
+use super::tile::{Cell, Tile};
 use crate::error::{Error, Result};
 use crate::execution::Listener;
 use crate::ids::ViewId;
@@ -30,6 +31,7 @@ pub struct Area {
     pub(super) options: LoadOptions,
     pub(super) params: Params,
     pub(super) tiles: Vec<Tile>,
+    left_out: Vec<[f64; 4]>,
     /// Sum of all that the tiles are made from.
     pub(super) sum: u32,
     pub(super) parts: Vec<CellPart>,
@@ -49,19 +51,25 @@ pub struct TileReport {
 
 impl Area {
     /// Divides the region of interest into tiles of about `tile_m` metres; without a region the
-    /// area that three views show.
+    /// area that three views show. `ground` has its lowest and highest height where they were
+    /// measured, metres, world frame: they are not measured again then.
     pub fn plan(
         source: &mut dyn FileSource,
         options: &LoadOptions,
+        ground: Option<[f64; 2]>,
         params: &Params,
         tile_m: f64,
     ) -> Result<Self> {
         refuse_corrections(params)?;
-        let (options, tiles) = tiles_of(source, options, tile_m)?;
+        let (options, divided) = divided(source, options, ground, tile_m)?;
+        let Division {
+            tiles, left_out, ..
+        } = divided;
         let files = source.files();
         Ok(Self {
             sum: sum_of(files, &options, params, &tiles),
             tiles,
+            left_out,
             whole: whole_views(files, &options)?,
             options,
             params: params.clone(),
@@ -80,11 +88,12 @@ impl Area {
     pub fn in_words(&self) -> String {
         let [x0, y0, x1, y1] = self.options.roi.expect("an area has one");
         format!(
-            "{}; area {x0:.0},{y0:.0},{x1:.0},{y1:.0} ({:.0} x {:.0} m) in {}",
+            "{}; area {x0:.0},{y0:.0},{x1:.0},{y1:.0} ({:.0} x {:.0} m) in {}{}",
             counted(self.whole.views.len(), "views"),
             x1 - x0,
             y1 - y0,
-            counted(self.tiles.len(), "tiles")
+            counted(self.tiles.len(), "tiles"),
+            Division::left_out_in_words(&self.left_out)
         )
     }
 
@@ -163,11 +172,12 @@ pub fn refuse_corrections(params: &Params) -> Result<()> {
 
 /// The tiles of the region of interest, or of the area that the views show, and the options with
 /// all that is decided once for the whole area; refused where the options do not go with tiles.
-pub(super) fn tiles_of(
+pub(super) fn divided(
     source: &mut dyn FileSource,
     options: &LoadOptions,
+    ground: Option<[f64; 2]>,
     tile_m: f64,
-) -> Result<(LoadOptions, Vec<Tile>)> {
+) -> Result<(LoadOptions, Division)> {
     if options.apply_fix {
         return Err(Error::Scene {
             problem: "tiles take the orientation as it is".to_owned(),
@@ -177,17 +187,12 @@ pub(super) fn tiles_of(
     source.hold(&|files| files_of_settling(files, options))?;
     let files = source.files();
     let mut options = settled(files, options);
-    if let Some(roi) = options.roi {
-        return Ok((options, plan_tiles(roi, tile_m)?));
-    }
-    let shown = ShownArea::new(files, &options)?;
-    options.roi = Some(shown.bounds);
-    let mut tiles = plan_tiles(shown.bounds, tile_m)?;
-    for tile in &mut tiles {
-        tile.cells.retain(|cell| shown.meets(cell.core));
-    }
-    tiles.retain(|tile| !tile.cells.is_empty());
-    Ok((options, tiles))
+    let divided = match options.roi {
+        Some(roi) => Division::of_region(roi, tile_m)?,
+        None => Division::of_shown(&ShownArea::new(files, &options, ground)?, tile_m)?,
+    };
+    options.roi = Some(divided.area);
+    Ok((options, divided))
 }
 
 /// What became of a tile.

@@ -102,6 +102,7 @@ mod tests {
         Area::plan(
             &mut files,
             &options,
+            None,
             &crate::params::Params::default(),
             60.0,
         )

@@ -1,6 +1,7 @@
 //! Large areas in overlapping cells, one at a time, whose models join.
 //!
 //! ```text
+//! division     which tiles and cells of an area are worked off; the plan that the page shows
 //! tile         cells on a grid of the world, with a margin around them; tiles of cells
 //! model_parts  buildings of a model in another model and frame
 //! join         one model: each building once, ids renumbered, whole images, one atlas
@@ -19,6 +20,7 @@
 //! Invariant: an area has the same model whatever the size of its tiles.
 
 mod area;
+mod division;
 mod fields;
 #[cfg(test)]
 mod fixture;
@@ -30,6 +32,7 @@ mod plan;
 mod tile;
 
 pub use area::{Area, TileReport, refuse_corrections};
+pub use division::{FlightPlan, TilePlan};
 pub use join::{CellPart, Joined, join};
 pub use plan::{BlockPlan, BlockSource, HeadStamp, InputStamp, PlannedCell, PlannedTile};
 pub use tile::{CELL_M, Cell, MARGIN_M, Tile, plan_tiles};

@@ -14,7 +14,8 @@ use std::io::{self, Read};
 
 use serde::{Deserialize, Serialize};
 
-use super::area::{join_cells, model_files, refuse_corrections, tiles_of, work_off};
+use super::area::{divided, join_cells, model_files, refuse_corrections, work_off};
+use super::division::Division;
 use super::join::Joined;
 use super::part_file::{PartKey, TileOutcome};
 use super::tile::{Cell, Tile};
@@ -196,6 +197,9 @@ pub struct BlockPlan {
     pub inputs: Vec<InputStamp>,
     /// The tiles.
     pub tiles: Vec<PlannedTile>,
+    /// The squares of the area that are left out because fewer than three views show their ground.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<[f64; 4]>,
 }
 
 impl BlockPlan {
@@ -214,9 +218,9 @@ impl BlockPlan {
         tile_m: f64,
     ) -> Result<Self> {
         refuse_corrections(params)?;
-        let (options, tiles) = tiles_of(files, options, tile_m)?;
+        let (options, divided) = divided(files, options, None, tile_m)?;
         whole_views(files.files(), &options)?;
-        let planned = planned(files, &options, &tiles)?;
+        let planned = planned(files, &options, &divided.tiles)?;
         Ok(Self {
             ridgeline: env!("CARGO_PKG_VERSION").to_owned(),
             source,
@@ -225,7 +229,13 @@ impl BlockPlan {
             params: params.clone(),
             inputs,
             tiles: planned,
+            left_out: divided.left_out,
         })
+    }
+
+    /// How many squares are left out, and why; nothing where none are.
+    pub fn left_out_in_words(&self) -> String {
+        Division::left_out_in_words(&self.left_out)
     }
 
     /// The plan as a file.

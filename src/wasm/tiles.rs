@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 
 use js_sys::Function;
-use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
 use super::convert::{from_js, input_error, listener_of, named_error, to_js};
@@ -11,65 +10,9 @@ use super::session::{Session, load_options};
 use crate::execution::MergedShards;
 use crate::orientation::InputFile;
 use crate::scene_loader::{
-    Flight, FlightOverview, LoadOptions, ViewWindow, files_of_ground, files_of_views, ground_files,
-    ground_heights,
+    LoadOptions, files_of_ground, files_of_views, ground_files, ground_heights,
 };
-use crate::tiles::{Area, Tile, TileReport, plan_tiles};
-
-/// Most tiles that the page plans: so many take it days.
-const MOST_TILES: usize = 1000;
-
-/// What `planFlight` returns.
-#[derive(Serialize, tsify::Tsify)]
-struct FlightPlan {
-    overview: FlightOverview,
-    tiles: Vec<TilePlan>,
-    /// Why there are no tiles; null where there are.
-    problem: Option<String>,
-}
-
-/// A tile before it is worked off.
-#[derive(Serialize, tsify::Tsify)]
-struct TilePlan {
-    /// x0, y0, x1, y1, metres, world frame of the input.
-    core: [f64; 4],
-    /// The box of what its squares look at.
-    region: [f64; 4],
-    /// The views that it reads, and which part of each; none where it is left out.
-    views: Vec<ViewWindow>,
-    /// Memory that it takes at its peak, about, megabytes.
-    memory_mb: u64,
-    /// Why it is left out.
-    left_out: Option<String>,
-}
-
-impl TilePlan {
-    /// Without a view.
-    fn new(tile: &Tile) -> Self {
-        let regions = tile.cells.iter().map(|cell| cell.region);
-        let around = |a: [f64; 4], b: [f64; 4]| {
-            [
-                a[0].min(b[0]),
-                a[1].min(b[1]),
-                a[2].max(b[2]),
-                a[3].max(b[3]),
-            ]
-        };
-        Self {
-            core: tile.core,
-            region: regions.reduce(around).unwrap_or(tile.core),
-            views: Vec::new(),
-            memory_mb: 0,
-            left_out: None,
-        }
-    }
-
-    /// Adds what one of its squares reads.
-    fn add(&mut self, views: Vec<ViewWindow>, memory_mb: u64) {
-        self.memory_mb = self.memory_mb.max(memory_mb);
-        self.views.extend(views);
-    }
-}
+use crate::tiles::{Area, FlightPlan, TileReport};
 
 /// What a tile came to, and its model (glTF) where it has one.
 #[wasm_bindgen]
@@ -107,53 +50,8 @@ impl Session {
     ) -> Result<JsValue, JsValue> {
         let options = load_options(&options)?;
         let heights: Option<[f64; 2]> = from_js(&heights, "heights")?;
-        let flight = Flight::new(&self.files, &options, heights).map_err(|e| input_error(&e))?;
-        let overview = flight.overview();
-        // What whole photographs have beyond their first bytes: those of a tile are filled at once.
-        let filled_mb = |views: &[ViewWindow]| {
-            let is_read = |name: &str| views.iter().any(|view| view.view == name);
-            let read = (overview.footprints.iter()).filter(|one| is_read(&one.view));
-            let read = read.filter_map(|one| self.files.iter().find(|file| file.path == one.path));
-            let beyond = read.map(|file| file.length() - file.first_bytes().len() as u64);
-            beyond.sum::<u64>() >> 20
-        };
-        let tile = |tile: &Tile| {
-            let mut planned = TilePlan::new(tile);
-            for cell in &tile.cells {
-                match flight.windows(cell.region) {
-                    Ok((views, memory_mb)) => {
-                        let unfilled = memory_mb.saturating_sub(filled_mb(&views));
-                        planned.add(views, unfilled);
-                    }
-                    Err(error) => planned.left_out = planned.left_out.or(Some(error.to_string())),
-                }
-            }
-            planned.left_out = planned.left_out.filter(|_| planned.views.is_empty());
-            planned.memory_mb += filled_mb(&planned.views);
-            planned
-        };
-        let planned = (options.roi.or(overview.shown)).map(|area| plan_tiles(area, tile_m));
-        let (tiles, problem) = match planned {
-            Some(Ok(tiles)) if tiles.len() > MOST_TILES => (
-                Vec::new(),
-                Some(format!(
-                    "{} tiles are more than the page plans; choose a region, or larger tiles",
-                    tiles.len()
-                )),
-            ),
-            Some(Ok(tiles)) => (tiles, None),
-            Some(Err(error)) => (Vec::new(), Some(error.to_string())),
-            None => (
-                Vec::new(),
-                Some("no place is shown by three photographs".to_owned()),
-            ),
-        };
-        let tiles = tiles.iter().map(tile).collect();
-        to_js(&FlightPlan {
-            overview,
-            tiles,
-            problem,
-        })
+        let plan = FlightPlan::new(&self.files, &options, heights, tile_m);
+        to_js(&plan.map_err(|e| input_error(&e))?)
     }
 
     /// The paths of the photographs in which `groundHeights` measures: to be filled.
@@ -161,42 +59,39 @@ impl Session {
     pub fn ground_files(
         &self,
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
-        area: Vec<f64>,
     ) -> Result<Vec<String>, JsValue> {
-        let needed = ground_files(&self.files, &load_options(&options)?, four(&area)?);
+        let needed = ground_files(&self.files, &load_options(&options)?);
         Ok(self.lacking(&needed))
     }
 
-    /// Lowest and highest ground of an area as the photographs in its middle show it, metres; null
+    /// Lowest and highest ground as the photographs in the middle of a flight show it, metres; null
     /// where they show too little.
     #[wasm_bindgen(js_name = groundHeights, unchecked_return_type = "[low: number, high: number] | null")]
     pub fn ground_heights(
         &self,
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
-        area: Vec<f64>,
     ) -> Result<JsValue, JsValue> {
-        to_js(&ground_heights(
-            &self.files,
-            &load_options(&options)?,
-            four(&area)?,
-        ))
+        to_js(&ground_heights(&self.files, &load_options(&options)?))
     }
 
-    /// Divides the region of interest of the options of `load` into tiles of about `tile_m` metres:
-    /// their cores, x0, y0, x1, y1 each. Results of an earlier run are dropped.
+    /// The tiles of `planFlight` with the same arguments, to be worked off: their cores, x0, y0,
+    /// x1, y1 each. `heights` are those of its overview; null measures them in files that are
+    /// whole. Results of an earlier run are dropped.
     #[wasm_bindgen(js_name = planTiles, unchecked_return_type = "[x0: number, y0: number, x1: number, y1: number][]")]
     pub fn plan_tiles(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
         tile_m: f64,
+        #[wasm_bindgen(unchecked_param_type = "[number, number] | null")] heights: JsValue,
     ) -> Result<JsValue, JsValue> {
         self.run = None;
         self.merged = MergedShards::default();
         self.outputs = None;
         self.points = None;
         let options = load_options(&options)?;
+        let heights: Option<[f64; 2]> = from_js(&heights, "heights")?;
         let mut files = &self.files[..];
-        let area = Area::plan(&mut files, &options, &self.params, tile_m);
+        let area = Area::plan(&mut files, &options, heights, &self.params, tile_m);
         let area = self.area.insert(area.map_err(|e| input_error(&e))?);
         to_js(&area.tiles().iter().map(|t| t.core).collect::<Vec<_>>())
     }
@@ -266,11 +161,6 @@ impl Session {
     fn planned(&self) -> Result<&Area, JsValue> {
         self.area.as_ref().ok_or_else(not_planned)
     }
-}
-
-fn four(numbers: &[f64]) -> Result<[f64; 4], JsValue> {
-    <[f64; 4]>::try_from(numbers)
-        .map_err(|_| named_error("RangeError", "an area is x0, y0, x1, y1"))
 }
 
 fn not_planned() -> JsValue {

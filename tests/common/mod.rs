@@ -1,6 +1,8 @@
 //! What the tests of whole runs share, natively and in wasm.
 #![allow(dead_code)] // Not every test uses all of it.
 
+#[cfg(not(target_arch = "wasm32"))]
+pub mod clouds;
 pub mod golden;
 pub mod scenes;
 #[cfg(not(target_arch = "wasm32"))]

@@ -21,6 +21,7 @@ fn drawn(scene: &Scene, view: usize, edge: &Segment3) -> Correction {
     Correction::AddEdge {
         photograph: seen.name.clone(),
         pixels: [pixel(&edge.p0, [1.2, -1.6]), pixel(&edge.p1, [-1.4, 1.4])],
+        sigma_px: 2.0,
     }
 }
 
@@ -172,6 +173,7 @@ fn what_is_no_edge_in_a_photograph_says_why() {
         let add = Correction::AddEdge {
             photograph: photograph.to_owned(),
             pixels: pixels.map(Point2::from),
+            sigma_px: 2.0,
         };
         let (found, trace) = in_scene(&scene, &model, &[add]);
         assert_eq!(found, model, "a refused correction changes nothing");
@@ -195,6 +197,21 @@ fn what_is_no_edge_in_a_photograph_says_why() {
         );
     }
     assert_eq!(why(name, [[2.0, 2.0], [30.0, 2.0]]), NotApplied::NoBuilding);
+    for (sigma_px, expected) in [
+        (0.0, NotApplied::Implausible),
+        (f64::NAN, NotApplied::Implausible),
+        // Half as long as a hand misses it.
+        (60.0, NotApplied::NotInPhotograph),
+        (f64::INFINITY, NotApplied::NotInPhotograph),
+    ] {
+        let add = Correction::AddEdge {
+            photograph: name.to_owned(),
+            pixels: there.map(Point2::from),
+            sigma_px,
+        };
+        let trace = in_scene(&scene, &model, &[add]).1;
+        assert_eq!(trace.outcomes, [Some(expected)], "{sigma_px}");
+    }
     // The other photographs show nothing.
     let mut blank = scene.clone();
     for view in &mut blank.views[1..] {
@@ -205,4 +222,64 @@ fn what_is_no_edge_in_a_photograph_says_why() {
     let (found, trace) = in_scene(&blank, &wrong, &[drawn(&scene, 0, &ridge(&truth))]);
     assert_eq!(trace.outcomes, [Some(NotApplied::NoLine)]);
     assert_eq!(found, wrong);
+}
+
+/// Every roof facet in one grey value, as its photographs would show it; they differ by a step.
+fn painted(scene: &Scene, truth: &SyntheticTruth, step: f32) -> Scene {
+    let mut plain = scene.clone();
+    for view in &mut plain.views {
+        let image = |p: &Point3<f64>| view.camera.project(p).expect("seen");
+        for (i, (_, ring)) in truth.facets.iter().enumerate() {
+            let ring: Vec<Point3<f64>> = ring
+                .iter()
+                .map(|p| Point3::new(image(p).x, image(p).y, 0.0))
+                .collect();
+            let grey = 0.35 + step * i as f32;
+            let width = view.gray.width;
+            for (k, value) in view.gray.data.iter_mut().enumerate() {
+                let at = Point2::new((k % width) as f64 + 0.5, (k / width) as f64 + 0.5);
+                if crate::model::inside(&ring, &at) {
+                    *value = grey;
+                }
+            }
+        }
+        view.red_blue = None;
+    }
+    plain
+}
+
+#[test]
+fn the_halves_of_a_plain_roof_turn_to_their_eaves() {
+    let (scene, truth) = gable_scene(320);
+    let (scene, right) = (painted(&scene, &truth, 0.15), model_of(&truth));
+    for facets in [[0, 1], [1, 0]] {
+        let wrong = merged(&scene, &right, facets);
+        for view in 0..scene.views.len() {
+            let (found, trace) = in_scene(&scene, &wrong, &[drawn(&scene, view, &ridge(&truth))]);
+            assert_eq!(trace.outcomes, [None], "view {view}");
+            let turned = turned_deg(&found, &right);
+            assert!(turned < 1.5, "view {view}: {turned} degrees");
+        }
+    }
+}
+
+#[test]
+fn a_ridge_that_no_other_photograph_shows_lies_on_its_facet() {
+    let (scene, truth) = gable_scene(320);
+    let (scene, right) = (painted(&scene, &truth, 0.0), model_of(&truth));
+    let wrong = merged(&scene, &right, [0, 1]);
+    for view in 0..scene.views.len() {
+        let (found, trace) = in_scene(&scene, &wrong, &[drawn(&scene, view, &ridge(&truth))]);
+        assert_eq!(trace.outcomes, [None], "view {view}");
+        let line = trace.lines[0].expect("a line");
+        let own = &right.facets[0].plane;
+        let off = [line.p0, line.p1].map(|p| own.signed_distance(&p).abs());
+        assert!(off[0].max(off[1]) < 0.01, "view {view}: {off:?}");
+        // As well as it is drawn, two pixels off.
+        let turned = turned_deg(&found, &right);
+        assert!(turned < 5.0, "view {view}: {turned} degrees");
+    }
+    // The facets without the step between them are one: nothing turns.
+    let again = in_scene(&scene, &right, &[drawn(&scene, 0, &ridge(&truth))]);
+    assert_eq!(again.0, right);
 }

@@ -132,6 +132,7 @@ fn corrections_are_read_as_they_were_written_and_refused_otherwise() {
         Correction::AddEdge {
             photograph: "a photograph.jpg".to_owned(),
             pixels: [[1.5, 2.0], [30.25, 1e3]].map(nalgebra::Point2::from),
+            sigma_px: 0.75,
         },
     ];
     let text = serde_json::to_string(&all).unwrap();
@@ -140,6 +141,13 @@ fn corrections_are_read_as_they_were_written_and_refused_otherwise() {
     assert!(matches!(
         corrections_from_json(short).unwrap()[0],
         Correction::MoveCorner { sigma_m: 0.02, .. }
+    ));
+    // As projects had it before the hand stated its accuracy.
+    let short =
+        r#"[{"correction": "add_edge", "photograph": "a.jpg", "pixels": [[1, 2], [9, 2]]}]"#;
+    assert!(matches!(
+        corrections_from_json(short).unwrap()[0],
+        Correction::AddEdge { sigma_px: 2.0, .. }
     ));
     for (bad, named) in [
         (r#"{"correction": "confirm"}"#, "sequence"),
@@ -160,6 +168,10 @@ fn corrections_are_read_as_they_were_written_and_refused_otherwise() {
         (
             r#"[{"correction": "add_edge", "photograph": "a.jpg", "pixels": [[1, 2], [1e999, 3]]}]"#,
             "number",
+        ),
+        (
+            r#"[{"correction": "add_edge", "photograph": "a", "pixels": [[1, 2], [9, 3]], "sigma_px": "x"}]"#,
+            "[0]",
         ),
         (
             r#"[{"correction": "set_eave", "building": [1, 2, 3], "height": 1e999}]"#,
@@ -213,6 +225,7 @@ fn whatever_is_corrected_the_invariants_hold() {
                         photograph: gable_scene(16).0.views[0].name.clone(),
                         pixels: [[p[0] + 8.0, p[1] + 8.0], [q[0] + 8.0, q[1] + 8.0]]
                             .map(nalgebra::Point2::from),
+                        sigma_px: 2.0,
                     },
                     6 => Correction::Merge {
                         facet: here,

@@ -3,6 +3,7 @@
 //! ```text
 //! hand    the drawn edge, moved to the edge that the view shows there
 //! beam    its epipolar beam: the candidates for the line, by the steps that the other views show
+//! steps   the steps along lines that may be edges
 //!    -> complete_from_edges    measured in every view, fitted and weighed as every other line
 //! ```
 //!
@@ -11,29 +12,36 @@
 
 mod beam;
 mod hand;
+mod steps;
 #[cfg(test)]
 mod tests;
 
+pub use hand::DrawnEdge;
+pub(crate) use steps::shown_along;
+
 use super::nview::{CompletedLine, complete_from_edges};
-use crate::geometry::Segment2;
+use crate::geometry::{Plane, Segment2, Segment3};
 use crate::ids::ViewId;
 use crate::lines3d::{Line3d, LineOrigin, ProjectedLine};
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
 
-/// The line, between heights in metres, of an edge drawn in a view from one pixel to another; its
-/// ends are those that were drawn. `None` where fewer than two other views show an edge along a
-/// line that the views together determine.
+/// The line, between heights in metres, of an edge drawn in a view; its ends are those that were
+/// drawn. Besides the lines that the other views make likely it is sought on the `planes` of roofs.
+/// `None` where fewer than two other views show an edge along a line that the views together
+/// determine.
 pub fn line_of_drawn(
     scene: &Scene,
-    view: ViewId,
-    drawn: &Segment2,
-    z_range: [f64; 2],
+    drawn: &DrawnEdge,
+    (z_range, planes): ([f64; 2], &[Plane]),
     (params, fitting): (&MatchParams, &Lines3dParams),
 ) -> Option<Line3d> {
-    let own = hand::own_edge(view, scene.view(view), drawn);
-    let snapped = hand::between(&own.segment, drawn);
-    let starts = beam::candidates(scene, view, &snapped, z_range, params.max_slope_deg);
+    let view = drawn.view;
+    let own = hand::own_edge(scene.view(view), drawn);
+    let snapped = hand::between(&own.segment, &drawn.segment);
+    let on_roof = (planes.iter()).filter_map(|p| hand::on_plane(scene.camera(view), &snapped, p));
+    let beam = beam::candidates(scene, view, &snapped, z_range, params.max_slope_deg);
+    let starts: Vec<Segment3> = on_roof.chain(beam).collect();
     let fitted = crate::execution::map(&starts, |_, start| {
         complete_from_edges(scene, start, &own, z_range, (params, fitting))
     });

@@ -6,13 +6,13 @@
 use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
-use super::super::ground::{pixel_in_the_middle, reduction_of, whole_plan};
+use super::super::ground::{pixel_in_the_middle, reduction_of, unreduced_plan};
 use super::super::input::LoadOptions;
 use super::super::memory;
 use super::super::plan::Plan;
 use super::super::planned_view::PlannedView;
 use super::super::region::RegionOfInterest;
-use super::windows::{ViewWindow, coarsest_pixel, enclosing, shown_places, shows};
+use super::windows::{ShownArea, ViewWindow, coarsest_pixel, enclosing, shows};
 use crate::camera::Camera;
 use crate::error::Result;
 use crate::orientation::InputFile;
@@ -92,9 +92,10 @@ pub struct Flight<'a> {
     memory_mb: Option<u32>,
     most: Option<usize>,
     plan: Plan,
-    /// Local frame.
+    /// World frame.
     heights: [f64; 2],
     source: GroundSource,
+    shown: Option<ShownArea>,
 }
 
 impl<'a> Flight<'a> {
@@ -105,19 +106,23 @@ impl<'a> Flight<'a> {
         options: &LoadOptions,
         ground: Option<[f64; 2]>,
     ) -> Result<Self> {
-        let mut plan = whole_plan(files, options);
+        let mut plan = unreduced_plan(files, options);
         if !plan.errors.is_empty() {
             return Err(plan.errors.remove(0));
         }
-        let z = plan.origin.z;
         let (heights, source) = match (options.ground_z, ground) {
-            (Some(stated), _) => ([stated - z; 2], GroundSource::Stated),
-            (None, Some(heights)) => (heights.map(|height| height - z), GroundSource::Measured),
+            (Some(stated), _) => ([stated; 2], GroundSource::Stated),
+            (None, Some(heights)) => (heights, GroundSource::Measured),
             (None, None) => {
                 let cameras: Vec<&Camera> = plan.views.iter().map(|view| &view.whole).collect();
-                ([assumed_ground(&cameras); 2], GroundSource::Assumed)
+                let assumed = assumed_ground(&cameras) + plan.origin.z;
+                ([assumed; 2], GroundSource::Assumed)
             }
         };
+        let shown = ShownArea::of_plan(&plan, heights);
+        for view in &mut plan.views {
+            view.reduce(options.reduction.unwrap_or(1));
+        }
         Ok(Self {
             files,
             memory_mb: options.memory_mb,
@@ -125,13 +130,25 @@ impl<'a> Flight<'a> {
             heights,
             source,
             plan,
+            shown,
         })
+    }
+
+    /// The ground that three or more views show; `None` where there is none.
+    pub fn shown(&self) -> Option<&ShownArea> {
+        self.shown.as_ref()
+    }
+
+    /// The heights of the ground, local frame.
+    fn local_heights(&self) -> [f64; 2] {
+        self.heights.map(|height| height - self.plan.origin.z)
     }
 
     /// All photographs, seen from above.
     pub fn overview(&self) -> FlightOverview {
         let origin = self.plan.origin;
-        let z = 0.5 * (self.heights[0] + self.heights[1]);
+        let [low, high] = self.local_heights();
+        let z = 0.5 * (low + high);
         let cameras: Vec<&Camera> = self.plan.views.iter().map(|view| &view.whole).collect();
         let coarsest = coarsest_pixel(&cameras, z).unwrap_or(f64::INFINITY);
         let footprint = |view: &PlannedView| Footprint {
@@ -145,23 +162,22 @@ impl<'a> Flight<'a> {
         let pixel_m = pixel_in_the_middle(cameras.iter().copied(), z).unwrap_or_default();
         let unreduced = |view: &PlannedView| f64::from(view.reduction);
         let reduction = self.plan.views.first().map_or(1.0, unreduced);
-        let world = |[x0, y0, x1, y1]: [f64; 4]| {
-            [x0 + origin.x, y0 + origin.y, x1 + origin.x, y1 + origin.y]
+        let moved = |[x0, y0, x1, y1]: [f64; 4], by: f64| {
+            let [x, y] = [by * origin.x, by * origin.y];
+            [x0 + x, y0 + y, x1 + x, y1 + y]
         };
-        let shown = enclosing(&shown_places(&cameras, z));
-        let mut overlap = overlap(&cameras, z, coarsest, frame_of(&cameras, shown));
-        overlap.area = world(overlap.area);
+        let shown = self.shown.as_ref().map(|shown| shown.bounds);
+        let frame = frame_of(&cameras, shown.map(|bounds| moved(bounds, -1.0)));
+        let mut overlap = overlap(&cameras, z, coarsest, frame);
+        overlap.area = moved(overlap.area, 1.0);
         FlightOverview {
-            heights: self.heights.map(|height| height + origin.z),
+            heights: self.heights,
             ground: self.source,
             ground_z: z + origin.z,
             pixel_m,
             reduction: reduction_of(pixel_m / reduction),
             footprints: self.plan.views.iter().map(footprint).collect(),
-            shown: shown.map(|shown| {
-                let [x0, y0, x1, y1] = world(shown);
-                [x0.floor(), y0.floor(), x1.ceil(), y1.ceil()]
-            }),
+            shown,
             overlap,
         }
     }
@@ -170,7 +186,7 @@ impl<'a> Flight<'a> {
     /// it takes at its peak, megabytes, with the whole files of these views.
     pub fn windows(&self, roi: [f64; 4]) -> Result<(Vec<ViewWindow>, u64)> {
         let mut views = self.plan.views.clone();
-        let region = RegionOfInterest::new(roi, &self.plan.origin, self.heights)?;
+        let region = RegionOfInterest::new(roi, &self.plan.origin, self.local_heights())?;
         region.cut(self.files, &mut views, self.most)?;
         let bytes = memory::peak_bytes(self.files, &views);
         if let Some(error) = memory::check_memory(bytes, &views, self.memory_mb) {

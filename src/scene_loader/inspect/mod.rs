@@ -6,6 +6,7 @@ mod flight;
 mod windows;
 
 pub use flight::{Flight, FlightOverview, Footprint, GroundSource, Overlap};
+pub(crate) use windows::box_of_views;
 pub use windows::{ShownArea, ViewWindow, region_windows};
 
 use serde::Serialize;

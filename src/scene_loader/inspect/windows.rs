@@ -3,8 +3,9 @@
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
-use super::super::ground::{ground_height, pixel_in_the_middle, plan_scene, settled, whole_plan};
+use super::super::ground::{ground_heights, pixel_in_the_middle, plan_scene, unreduced_plan};
 use super::super::input::LoadOptions;
+use super::super::plan::Plan;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::math::{larger, smaller};
@@ -56,32 +57,54 @@ pub struct ShownArea {
     pub bounds: [f64; 4],
     /// The places, world frame.
     places: Vec<Point2<f64>>,
+    /// Distance of neighbouring places, metres.
+    step: f64,
 }
 
 impl ShownArea {
-    /// What the views show of level ground, at the height that is stated or that the photographs
-    /// show in the middle of the block.
-    pub fn new(files: &[InputFile], options: &LoadOptions) -> Result<Self> {
-        let options = settled(files, options);
-        let plan = whole_plan(files, &options);
+    /// What the views show of level ground, at the height that is stated, else in the middle of
+    /// `ground` (lowest and highest, metres, world frame), else at what the photographs in the
+    /// middle of the block show. By how much photographs are reduced does not matter.
+    pub fn new(
+        files: &[InputFile],
+        options: &LoadOptions,
+        ground: Option<[f64; 2]>,
+    ) -> Result<Self> {
+        let plan = unreduced_plan(files, options);
         if let Some(error) = plan.errors.first() {
             return Err(error.clone());
         }
-        let cameras: Vec<&Camera> = plan.views.iter().map(|view| &view.whole).collect();
-        let shown = ground_height(files, &options, &plan).map(|z| shown_places(&cameras, z));
-        let places = shown.unwrap_or_default().into_iter();
-        let places: Vec<Point2<f64>> = places.map(|p| p + plan.origin.xy()).collect();
-        let [x0, y0, x1, y1] = enclosing(&places).ok_or_else(|| Error::Scene {
+        let stated = options.ground_z.map(|z| [z, z]);
+        let ground = stated.or(ground).or_else(|| ground_heights(files, options));
+        let shown = ground.and_then(|heights| Self::of_plan(&plan, heights));
+        shown.ok_or_else(|| Error::Scene {
             problem: "the cameras do not tell which area three of them show".to_owned(),
             advice: "give the region of interest (--roi x0,y0,x1,y1)".to_owned(),
-        })?;
-        let bounds = [x0.floor(), y0.floor(), x1.ceil(), y1.ceil()];
-        Ok(Self { bounds, places })
+        })
     }
 
-    /// Does a box (x0, y0, x1, y1, world frame) hold some of the places?
+    /// The same of whole images that are not reduced.
+    pub(super) fn of_plan(plan: &Plan, ground: [f64; 2]) -> Option<Self> {
+        let [low, high] = ground.map(|height| height - plan.origin.z);
+        let cameras: Vec<&Camera> = plan.views.iter().map(|view| &view.whole).collect();
+        let (places, step) = shown_places(&cameras, 0.5 * (low + high));
+        let places = places.into_iter().map(|p| p + plan.origin.xy());
+        let places: Vec<Point2<f64>> = places.collect();
+        let [x0, y0, x1, y1] = enclosing(&places)?;
+        let bounds = [x0.floor(), y0.floor(), x1.ceil(), y1.ceil()];
+        Some(Self {
+            bounds,
+            places,
+            step,
+        })
+    }
+
+    /// Does a box (x0, y0, x1, y1, world frame) hold some of the places? A side that is shorter
+    /// than their distance counts as long as that, so that none falls between them.
     pub fn meets(&self, [x0, y0, x1, y1]: [f64; 4]) -> bool {
-        let holds = |p: &Point2<f64>| p.x >= x0 && p.x < x1 && p.y >= y0 && p.y < y1;
+        let [x, y] = [x1 - x0, y1 - y0].map(|side| larger(0.5 * (self.step - side), 0.0));
+        let holds =
+            |p: &Point2<f64>| p.x >= x0 - x && p.x < x1 + x && p.y >= y0 - y && p.y < y1 + y;
         self.places.iter().any(holds)
     }
 }
@@ -98,16 +121,16 @@ pub(super) fn shows(camera: &Camera, p: &Point3<f64>, coarsest: f64) -> bool {
 }
 
 /// The places of a grid on the ground at this height that enough cameras show, none of them much
-/// more coarsely than the middle of an image; local frame.
-pub(super) fn shown_places(cameras: &[&Camera], z: f64) -> Vec<Point2<f64>> {
+/// more coarsely than the middle of an image, and the step of the grid; local frame.
+fn shown_places(cameras: &[&Camera], z: f64) -> (Vec<Point2<f64>>, f64) {
     let Some(coarsest) = coarsest_pixel(cameras, z) else {
-        return Vec::new();
+        return (Vec::new(), 0.0);
     };
     let boxes = cameras
         .iter()
         .map(|camera| box_of_shown(camera, z, coarsest));
     let Some([x0, y0, x1, y1]) = boxes.reduce(around) else {
-        return Vec::new();
+        return (Vec::new(), 0.0);
     };
     let step = larger(x1 - x0, y1 - y0) / f64::from(PLACES);
     let along = |from: f64, to: f64| (0..=((to - from) / step) as u32).map(f64::from);
@@ -121,7 +144,18 @@ pub(super) fn shown_places(cameras: &[&Camera], z: f64) -> Vec<Point2<f64>> {
         };
         places.filter(is_shown).collect()
     };
-    crate::execution::map(&rows, row).concat()
+    (crate::execution::map(&rows, row).concat(), step)
+}
+
+/// A box around all that some of the cameras show of ground between these heights, none of it much
+/// more coarsely than the middle of an image; local frame.
+pub(crate) fn box_of_views(cameras: &[&Camera], heights: [f64; 2]) -> Option<[f64; 4]> {
+    let boxes = heights.iter().flat_map(|&z| {
+        let coarsest = coarsest_pixel(cameras, z);
+        let of_camera = move |camera: &&Camera| Some(box_of_shown(camera, z, coarsest?));
+        cameras.iter().filter_map(of_camera)
+    });
+    boxes.reduce(around)
 }
 
 /// A box around all that a camera shows of the ground at this height in pixels finer than
@@ -179,12 +213,42 @@ mod tests {
     fn the_area_is_what_three_views_show() {
         let cameras = [0.0, 30.0, 60.0, 90.0].map(|x| above(x, 5.0));
         let cameras: Vec<&Camera> = cameras.iter().collect();
-        let found = enclosing(&shown_places(&cameras, 0.0)).unwrap();
+        let found = enclosing(&shown_places(&cameras, 0.0).0).unwrap();
         // The first three share 10 to 50, the last three 40 to 80.
         for (found, planted) in found.iter().zip([10.0, -45.0, 80.0, 55.0]) {
             assert!((found - planted).abs() < 3.0, "{found} for {planted}");
         }
-        assert!(shown_places(&cameras[..2], 0.0).is_empty());
+        assert!(shown_places(&cameras[..2], 0.0).0.is_empty());
+    }
+
+    #[test]
+    fn no_square_falls_between_places_that_are_far_from_each_other() {
+        // Every hundred metres along a line.
+        let shown = ShownArea {
+            bounds: [0.0, 0.0, 1000.0, 60.0],
+            places: (0..10)
+                .map(|i| Point2::new(100.0 * f64::from(i), 30.0))
+                .collect(),
+            step: 100.0,
+        };
+        for i in 0..15 {
+            let x = 60.0 * f64::from(i);
+            assert!(shown.meets([x, 0.0, x + 60.0, 60.0]), "{x}");
+        }
+        assert!(!shown.meets([960.0, 0.0, 1000.0, 60.0]));
+        assert!(!shown.meets([0.0, 120.0, 60.0, 180.0]));
+    }
+
+    #[test]
+    fn the_box_of_views_holds_all_that_one_shows() {
+        let cameras = [0.0, 30.0].map(|x| above(x, 5.0));
+        let cameras: Vec<&Camera> = cameras.iter().collect();
+        // From 100 m above, and from 50 m above.
+        let found = box_of_views(&cameras, [0.0, 50.0]).unwrap();
+        assert_eq!(found, [-50.0, -45.0, 80.0, 55.0]);
+        let found = box_of_views(&cameras, [50.0, 50.0]).unwrap();
+        assert_eq!(found, [-25.0, -20.0, 55.0, 30.0]);
+        assert_eq!(box_of_views(&[], [0.0, 0.0]), None);
     }
 
     #[test]
@@ -199,7 +263,7 @@ mod tests {
         };
         let cameras = [0.0, 5.0, 10.0].map(tilted);
         let cameras: Vec<&Camera> = cameras.iter().collect();
-        let found = shown_places(&cameras, 0.0);
+        let (found, _) = shown_places(&cameras, 0.0);
         let farthest = found.iter().map(|p| p.y.abs()).fold(0.0, larger);
         // The middle of an image is 100 / cos 70 = 292 m away.
         assert!((500.0..585.0).contains(&farthest), "{farthest}");

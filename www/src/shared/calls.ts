@@ -52,11 +52,8 @@ export interface WorkerCalls {
   runShard(stage: string, map: string, index: number, of: number): Bytes;
   inspect(options: LoadOptions): Promise<Inspection>;
   load(options: LoadOptions): Promise<SceneInfo>;
-  /** Lowest and highest ground of an area as photographs in its middle show it, metres; null where they show too little. */
-  groundHeights(
-    options: LoadOptions,
-    area: readonly [number, number, number, number],
-  ): Promise<[number, number] | null>;
+  /** Lowest and highest ground as photographs in the middle of a flight show it, metres; null where they show too little. */
+  groundHeights(options: LoadOptions): Promise<[number, number] | null>;
   exportProject(options: LoadOptions, shown: Uint8Array): Promise<Bytes>;
   /** The outcome of a tile, the `index`-th of `of`, as bytes, with its progress as that of `stage`. */
   runTile(stage: string, index: number, of: number): Promise<Bytes>;

@@ -31,12 +31,8 @@ export function workerCalls(
         [() => session.groundFilesOfLoad(options), () => session.viewFilesOfLoad(options)],
         () => session.load(options),
       ),
-    groundHeights: (options, area) => {
-      const where = new Float64Array(area);
-      return files.withWhole([() => session.groundFiles(options, where)], () =>
-        session.groundHeights(options, where),
-      );
-    },
+    groundHeights: (options) =>
+      files.withWhole([() => session.groundFiles(options)], () => session.groundHeights(options)),
     exportProject: (options, shown) =>
       files.withWhole([() => session.lackingFiles()], () => session.exportProject(options, shown)),
     defaultParams: () => asTree(defaults()),

@@ -1,11 +1,16 @@
 /** Flights: a plan before anything long, tile after tile with the model growing, and going on after a reload. */
-import { readFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { expect, type Page, test } from "@playwright/test";
 import {
   axeFindings,
+  BINARY,
   give,
   houseFiles,
   lookOf,
+  MAY_SKIP,
   openTab,
   stage,
   type Upload,
@@ -14,11 +19,33 @@ import {
   watch,
 } from "./helpers";
 
+/** Of the house's photographs, pixels. */
+const HOUSE_SIZE = [256, 256] as const;
+
 /** The house's six photographs three times over: more than are loaded at once. */
 function flightFiles(): Upload[] {
   return ["a", "b", "c"].flatMap((pass) =>
     houseFiles().map(({ name, buffer }) => upload(`${pass}_${name}`, buffer)),
   );
+}
+
+/** One picture as if taken 100 m above level ground at 0, every 20 m along 300 m to the east and 300 m to the north. */
+function lShapedFlight(): Upload[] {
+  const picture = houseFiles().find(({ name }) => name.endsWith(".jpg"))?.buffer ?? Buffer.alloc(0);
+  const steps = [...Array(16).keys()].map((i) => 20 * i);
+  const places = [...steps.map((x) => [x, 0]), ...steps.slice(1).map((y) => [0, y])];
+  const names = places.map((_, i) => `p${String(i).padStart(2, "0")}.jpg`);
+  const [width, height] = HOUSE_SIZE;
+  // Looking down, north up: t = -R C.
+  const lines = places.map(([x, y], i) => `${i} 0 1 0 0 ${-(x ?? 0)} ${y} 100 1 ${names[i]}\n\n`);
+  return [
+    ...names.map((name) => upload(name, picture)),
+    upload(
+      "cameras.txt",
+      Buffer.from(`1 PINHOLE ${width} ${height} ${width} ${width} ${width / 2} ${height / 2}\n`),
+    ),
+    upload("images.txt", Buffer.from(lines.join(""))),
+  ];
 }
 
 const plan = (page: Page) => page.getByTestId("flight-plan");
@@ -114,11 +141,48 @@ test("a plan is there before anything long, and the region is drawn on it or sta
   await page.getByLabel(/^Height of the ground/).fill("100");
   await page.getByLabel(/^Height of the ground/).press("Enter");
   await expect(facts(page)).toContainText("+100.0 m, as stated");
-  await state(page, "West", String(before + 1));
+  // With the height that is stated now another area is shown.
+  const west100 = Number(await side(page, "West").inputValue());
+  await state(page, "West", String(west100 + 1));
+  await expect(side(page, "West")).toHaveValue(String(west100 + 1));
   await plan(page).getByRole("button", { name: "Stage by stage" }).click();
   await expect(plan(page)).toHaveCount(0);
   await expect(page.getByText("the 12 that say most about it are used")).toBeVisible();
   await expect(page.getByRole("alert")).toHaveCount(0);
+  expect(problems).toEqual([]);
+});
+
+test("an L-shaped flight has the tiles of the command line, and what it leaves out says why", async ({
+  page,
+}) => {
+  test.skip(MAY_SKIP, "the command line is not built");
+  const { problems } = watch(page);
+  const folder = mkdtempSync(join(tmpdir(), "ridgeline-"));
+  const files = lShapedFlight();
+  for (const { name, buffer } of files) {
+    writeFileSync(join(folder, name), buffer);
+  }
+  const out = join(folder, "plan");
+  execFileSync(BINARY, ["plan", folder, "--tile", "60", "--ground-z", "0", "--out", out]);
+  const { tiles, left_out } = JSON.parse(readFileSync(join(out, "tiles.json"), "utf8")) as {
+    tiles: unknown[];
+    left_out: unknown[];
+  };
+  expect(left_out.length).toBeGreaterThan(15);
+
+  await page.goto("/");
+  await give(page, files);
+  await openPlace(page);
+  await page.getByLabel(/^Height of the ground/).fill("0");
+  await page.getByLabel(/^Height of the ground/).press("Enter");
+  await expect(facts(page)).toContainText("0.0 m, as stated");
+  await expect(plan(page).locator(".tile")).toHaveCount(tiles.length);
+  const squares = plan(page).locator(".squares-left-out");
+  await expect(squares).toHaveAttribute("data-count", String(left_out.length));
+  await expect(squares.locator("title")).toHaveText("Left out: fewer than three photographs show its ground");
+  await expect(facts(page)).toContainText(`${left_out.length} squares left out`);
+  await expect(plan(page).getByRole("button", { name: `Reconstruct ${tiles.length} tiles` })).toBeEnabled();
+  expect(await axeFindings(page)).toEqual([]);
   expect(problems).toEqual([]);
 });
 

@@ -1,5 +1,6 @@
 /** What the page's tests share: its parts, files to give it, and the pixels that it shows. */
-import { readdirSync, readFileSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
+import { fileURLToPath } from "node:url";
 import { expect, type Locator, type Page, test } from "@playwright/test";
 import axe from "axe-core";
 
@@ -8,6 +9,14 @@ export interface Upload {
   mimeType: string;
   buffer: Buffer;
 }
+
+/** The command line, to be compared with the page. */
+const built = (profile: string) =>
+  fileURLToPath(new URL(`../../../target/${profile}/ridgeline`, import.meta.url));
+export const BINARY =
+  process.env["RIDGELINE"] ?? ["debug", "release"].map(built).find(existsSync) ?? built("release");
+/** `make test` names the program: then it must be there. */
+export const MAY_SKIP = process.env["RIDGELINE"] === undefined && !existsSync(BINARY);
 
 const DEMO = new URL("../../public/demo/", import.meta.url);
 const HOUSE = new URL("../fixtures/house/", import.meta.url);

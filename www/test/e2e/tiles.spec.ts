@@ -1,18 +1,21 @@
 /** Large areas in tiles, and projects: the page and the command line give each other the same. */
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { fileURLToPath } from "node:url";
 import { expect, type Page, test } from "@playwright/test";
-import { give, houseFiles, openParameters, stage, upload, waitForStage, watch } from "./helpers";
+import {
+  BINARY,
+  give,
+  houseFiles,
+  MAY_SKIP,
+  openParameters,
+  stage,
+  upload,
+  waitForStage,
+  watch,
+} from "./helpers";
 
-const built = (profile: string) =>
-  fileURLToPath(new URL(`../../../target/${profile}/ridgeline`, import.meta.url));
-const BINARY =
-  process.env["RIDGELINE"] ?? ["debug", "release"].map(built).find(existsSync) ?? built("release");
-/** `make test` names the program: then it must be there. */
-const MAY_SKIP = process.env["RIDGELINE"] === undefined && !existsSync(BINARY);
 const REGION = "-31, -31, 31, 31";
 
 /** Runs the command line on files; the folder of its results. */

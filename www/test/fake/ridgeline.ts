@@ -538,6 +538,9 @@ export class Session implements CoreSession {
         overlap: { area, columns: 1, rows: 1, counts: [views.length] },
       },
       tiles: [{ core: area, region: area, views, memory_mb: 10, left_out: null }],
+      left_out: [],
+      squares_left_out: 0,
+      why_left_out: "fewer than three photographs show its ground",
       problem: null,
     };
   }

@@ -6,10 +6,14 @@ import { showTab } from "../state/viewState";
 import { showCorrecting } from "./drawn";
 import { correct } from "./history";
 
-/** A place in a photograph, pixels of the view. */
+/** Standard deviation of a click, pixels of the display. Assumption: of a hand with a mouse. */
+const CLICK_PX = 2;
+
+/** A place in a photograph, pixels of the view, each shown as `scale` pixels of the display. */
 export interface Pixel {
   view: number;
   at: Vec2;
+  scale: number;
 }
 
 const drawing = signal(false);
@@ -38,16 +42,21 @@ export function drawEdge(draws: boolean): void {
 }
 
 /** Takes a clicked end; both ends lie in one photograph, so a click in another one begins anew. */
-export async function takeEdgeEnd(view: number, at: Vec2): Promise<void> {
+export async function takeEdgeEnd(view: number, at: Vec2, scale: number): Promise<void> {
   const first = start.value;
   const photograph = scene.peek()?.views[view]?.name;
   if (!drawing.value || photograph === undefined) {
     return;
   }
   if (first === null || first.view !== view) {
-    start.value = { view, at };
+    start.value = { view, at, scale };
     return;
   }
   drawEdge(false);
-  await correct({ correction: "add_edge", photograph, pixels: [first.at, at] });
+  await correct({
+    correction: "add_edge",
+    photograph,
+    pixels: [first.at, at],
+    sigma_px: Number((CLICK_PX / Math.min(first.scale, scale)).toPrecision(2)),
+  });
 }

@@ -186,7 +186,7 @@ function regionText(region: Region | null): string {
   return runOptions.value.roi === null ? `${size}, all that three photographs show` : size;
 }
 
-function tilesText({ tiles }: FlightPlan, used: number): string {
+function tilesText({ tiles, squares_left_out, why_left_out }: FlightPlan, used: number): string {
   const lacking = tiles.filter(({ left_out }) => isOfMemory(left_out)).length;
   const unseen = tiles.length - used - lacking;
   const parts = [String(used)];
@@ -195,6 +195,9 @@ function tilesText({ tiles }: FlightPlan, used: number): string {
   }
   if (lacking > 0) {
     parts.push(`${lacking} too large for the memory: choose a smaller share of the photographs' size`);
+  }
+  if (squares_left_out > 0) {
+    parts.push(`${counted(squares_left_out, "squares")} left out: ${why_left_out}`);
   }
   return parts.join("; ");
 }

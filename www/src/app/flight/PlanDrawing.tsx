@@ -50,6 +50,7 @@ export function PlanDrawing({ plan, region, withPictures, drawsByTouch, isFixed,
             <polygon key={path} points={pointsOf(frame, outline)} />
           ))}
         </g>
+        <LeftOutSquares plan={plan} frame={frame} />
         <Tiles plan={plan} frame={frame} />
         {withPictures && <Pictures plan={plan} frame={frame} />}
         <g class="cameras">
@@ -112,6 +113,23 @@ function shadingOf({ columns, rows, counts }: Overlap): string {
     }
   });
   return canvas.toDataURL();
+}
+
+/** What no tile reconstructs. */
+function LeftOutSquares({ plan, frame }: { plan: FlightPlan; frame: PlanFrame }) {
+  const { left_out, squares_left_out, why_left_out } = plan;
+  if (left_out.length === 0) {
+    return null;
+  }
+  const outline = left_out.map((core) => {
+    const { x, y, width, height } = boxOf(frame, core);
+    return `M${x.toFixed(1)} ${y.toFixed(1)}h${width.toFixed(1)}v${height.toFixed(1)}h${(-width).toFixed(1)}z`;
+  });
+  return (
+    <path class="squares-left-out" data-count={squares_left_out} d={outline.join("")}>
+      <title>{`Left out: ${why_left_out}`}</title>
+    </path>
+  );
 }
 
 function Tiles({ plan, frame }: { plan: FlightPlan; frame: PlanFrame }) {

@@ -34,8 +34,8 @@ interface Props {
   /** See `Figure`. */
   inText: boolean;
   onPick: (selection: Selection | null) => void;
-  /** Takes places instead, pixels of the image; null ends that. */
-  onPlace?: ((at: Vec2 | null) => void) | undefined;
+  /** Takes places instead, pixels of the image, each so many pixels of the display; null ends that. */
+  onPlace?: ((at: Vec2 | null, scale: number) => void) | undefined;
 }
 
 const ZOOM_STEP = 1.25;
@@ -97,7 +97,7 @@ export function ImageCanvas({
   pick.current = ({ x, y, isTouch }) => {
     const at = toImage(viewport, { x, y });
     if (onPlace !== undefined) {
-      onPlace([at.x, at.y]);
+      onPlace([at.x, at.y], viewport.scale);
       return;
     }
     const reach = (isTouch ? TOUCH_REACH_PX : PICK_REACH_PX) / viewport.scale;
@@ -134,9 +134,13 @@ export function ImageCanvas({
       setMoved(next);
     } else if (event.key === "Enter" && onPlace !== undefined) {
       const { x, y } = toImage(viewport, { x: box.width / 2, y: box.height / 2 });
-      onPlace([x, y]);
+      onPlace([x, y], viewport.scale);
     } else if (event.key === "Escape") {
-      (onPlace ?? onPick)(null);
+      if (onPlace === undefined) {
+        onPick(null);
+      } else {
+        onPlace(null, viewport.scale);
+      }
     }
   };
 

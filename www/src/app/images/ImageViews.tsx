@@ -12,8 +12,8 @@ import { ALL_VIEWS, ViewPicker } from "./ViewPicker";
 
 /** Something that is drawn in the views by clicks. */
 export interface PlaceTool {
-  /** Takes a place of a view, pixels; null ends the tool. Undefined: clicks pick. */
-  onPlace?: ((view: number, at: Vec2 | null) => void) | undefined;
+  /** Takes a place of a view, pixels, each shown as `scale` pixels of the display; null ends the tool. Undefined: clicks pick. */
+  onPlace?: ((view: number, at: Vec2 | null, scale: number) => void) | undefined;
   /** What it shows in a view. */
   marks: (view: number) => readonly Mark[];
 }
@@ -54,7 +54,7 @@ export function ImageViews({ figure, empty, tool }: Props) {
             follows={followsSelection.value && shown.length > 1}
             inText={figure.inText}
             onPick={act.select}
-            onPlace={tool?.onPlace && ((at) => tool.onPlace?.(view, at))}
+            onPlace={tool?.onPlace && ((at, scale) => tool.onPlace?.(view, at, scale))}
           />
         ))}
       </div>

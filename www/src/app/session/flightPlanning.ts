@@ -37,12 +37,10 @@ export function proposeTiles(): void {
 /** Plans the tiles, and measures the ground where nobody states its height; the plan is shown before that. */
 export async function planFlight(turn: Turn, tileM: number): Promise<void> {
   await planFitting(tileM);
-  // Where the assumed height leaves nothing to be seen, the middle of the flight.
-  const area = plannedRegion() ?? flightPlan.value?.overview.overlap.area ?? null;
-  if (area !== null && runOptions.value.groundZ === null && measuredHeights.value === null) {
+  if (runOptions.value.groundZ === null && measuredHeights.value === null) {
     turn.enter("load", "Measuring the height of the ground");
-    const options = optionsOf({ ...runOptions.value, roi: null, reduction: plannedReduction.value });
-    const found = await engine.call("groundHeights", options, area);
+    // In the middle of the flight, whatever the region: the tiles are those of the command line.
+    const found = await engine.call("groundHeights", optionsOf({ ...runOptions.value, roi: null }));
     if (found !== null) {
       setMeasuredHeights(found);
       await planFitting(tileM);
@@ -82,14 +80,14 @@ export function isOfMemory(leftOut: string | null): boolean {
   return leftOut !== null && / MB of memory/.test(leftOut);
 }
 
-/** The options with which the tiles are worked off: the region and the size of the photographs are those of the plan. */
+/** The options with which the tiles are worked off: the size of the photographs is that of the plan. */
 export function tileOptions(): LoadOptions {
-  const roi = plannedRegion();
-  return optionsOf({
-    ...runOptions.value,
-    roi: roi === null ? null : [...roi],
-    reduction: plannedReduction.value,
-  });
+  return optionsOf({ ...runOptions.value, reduction: plannedReduction.value });
+}
+
+/** Lowest and highest ground of the plan, by which its tiles are chosen where no region is stated. */
+export function plannedHeights(): [number, number] {
+  return flightPlan.value?.overview.heights ?? [0, 0];
 }
 
 /** The region of interest, or what three photographs show. */
@@ -104,7 +102,8 @@ function optionsOf(wanted: RunOptions): LoadOptions {
 /** The outcomes that are kept of these tiles, by all that they depend on. */
 export function keptTilesOf(tileM: number): KeptTiles {
   const photographs = files.value.map(({ path, blob }) => [path, blob.size]);
-  return new KeptTiles(JSON.stringify([CORE_VERSION, tileM, tileOptions(), params.value, photographs]));
+  const made = [CORE_VERSION, tileM, tileOptions(), plannedHeights(), params.value, photographs];
+  return new KeptTiles(JSON.stringify(made));
 }
 
 /** Forgets the plan: the files are others. */

@@ -23,7 +23,7 @@ import {
 import type { KeptTiles } from "../tiles/keptTiles";
 import { noteTile, secondsPerMegapixel } from "../tiles/pace";
 import type { Turn } from "./actionQueue";
-import { keptTilesOf, planFlight, tileOptions } from "./flightPlanning";
+import { keptTilesOf, planFlight, plannedHeights, tileOptions } from "./flightPlanning";
 import { engine, ensureInspected, noteResults, outdateScene } from "./session";
 
 /** The progress of the whole area is shown at the last stage: only the model spans the tiles. */
@@ -77,7 +77,7 @@ export async function runTiles(turn: Turn, tileM: number): Promise<void> {
 }
 
 async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<TileReport[]> {
-  const tiles = await engine.call("planTiles", tileOptions(), tileM);
+  const tiles = await engine.call("planTiles", tileOptions(), tileM, plannedHeights());
   const reports: TileReport[] = [];
   for (const index of tiles.keys()) {
     const secondsLeft = secondsPerMegapixel.value * megapixelsLeft();

@@ -30,11 +30,11 @@ export function edgeTool({ scene, results }: Pick<Figure, "scene" | "results">):
     ];
     return [{ points, closed: true, colour: PALETTE.selected, width: 2, fill: 0.5 }];
   };
-  const onPlace = (view: number, at: Vec2 | null) => {
+  const onPlace = (view: number, at: Vec2 | null, scale: number) => {
     if (at === null) {
       drawEdge(false);
     } else {
-      void takeEdgeEnd(view, at);
+      void takeEdgeEnd(view, at, scale);
     }
   };
   return {
