@@ -295,8 +295,8 @@ mod tests {
         assert!((found - FALL_DEG).abs() < 1.0, "{found}");
     }
 
-    #[test]
-    fn eaves_tell_the_slope_of_a_plain_roof() {
+    /// A roof that is bright, and even.
+    fn plain_roof() -> Scene {
         let plain = TexturedPlane {
             plane: left(FALL_DEG),
             exists: |x, y| x.abs() <= 5.0 && (0.0..=4.0).contains(&y),
@@ -304,10 +304,41 @@ mod tests {
         };
         let mut scene = scene(&[plain, level_ground()]);
         let gray = scene.views.iter_mut().flat_map(|v| &mut v.gray.data);
-        // The roof is bright, and even.
         gray.filter(|g| **g == 0.5).for_each(|g| *g = 0.9);
-        let found = found_deg(&scene);
+        scene
+    }
+
+    #[test]
+    fn eaves_tell_the_slope_of_a_plain_roof() {
+        let found = found_deg(&plain_roof());
         assert!((found - FALL_DEG).abs() < 1.0, "{found}");
+    }
+
+    #[test]
+    fn sides_alone_tell_the_slope_unless_a_single_view_shows_them() {
+        let planes: Vec<Plane> = (-60..=60).map(|deg| left(f64::from(deg))).collect();
+        let params = Params::default();
+        let told = |scene: &Scene| {
+            let beside = Beside {
+                scene,
+                line: &ridge(),
+                params: &params,
+            };
+            beside.of_sides(&half(), &planes)
+        };
+        let mut scene = plain_roof();
+        let found = told(&scene);
+        let best = likeliest(&found) as f64 - 60.0;
+        assert!((best - FALL_DEG).abs() <= 1.0, "{best}");
+        let most = |nats: &[f64]| nats.iter().fold(0.0, |most: f64, n| most.max(n.abs()));
+        (scene.views.iter_mut().skip(1)).for_each(|view| view.gray.data.fill(0.5));
+        let one = told(&scene);
+        assert!(
+            most(&one) < 0.1 * most(&found),
+            "{} {}",
+            most(&one),
+            most(&found)
+        );
     }
 
     #[test]
