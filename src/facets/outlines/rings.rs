@@ -111,7 +111,7 @@ impl Rings {
         })
     }
 
-    /// The chains that all rings are made of, each once.
+    /// The chains that all rings are made of, each once, but for slits.
     pub(super) fn chains(&self) -> Vec<Chain> {
         let place: BTreeMap<[usize; 2], Place> = self.sides().map(|(p, side)| (side, p)).collect();
         let links = self.links();
@@ -138,7 +138,8 @@ impl Rings {
                     index: p.index + 1,
                     ..p
                 });
-                if in_right.is_some_and(|p| p.ring < index) {
+                // Each once; a slit, with one ring on both sides, stays as it is.
+                if in_right.is_some_and(|p| p.ring <= index) {
                     continue;
                 }
                 chains.push(Chain {
