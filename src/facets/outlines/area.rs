@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 
-use super::OutlineEnergy;
+use super::energy::OutlineEnergy;
 use super::rings::{Chain, Rings};
 use crate::geometry::bounds;
 use crate::photoconsistency::PlanGrid;

@@ -6,7 +6,7 @@
 //! outline is the one of least
 //!
 //! ```text
-//! E = - sum over the area  nats(views | plane)  +  sum over the sides  length x V  +  sum over corners
+//! E = - sum over area  nats(views | plane)  +  sum over sides  length x V  +  sum over corners
 //! ```
 //!
 //! with the first two terms of the labelling ([`crate::labelling`]) and, for every corner, minus
@@ -16,45 +16,33 @@
 //! straight way, and by ways that go on from one end and meet what comes from the other.
 //!
 //! ```text
-//! rings  the outlines of all facets, and the chains of sides that they share
-//! ways   simpler ways between two vertices of a chain
-//! area   what the views say of the area between two ways
+//! energy  what the energy of outlines is made of
+//! rings   the outlines of all facets, and the chains of sides that they share
+//! ways    simpler ways between two vertices of a chain
+//! area    what the views say of the area between two ways
 //! ```
 //!
 //! Invariant: no side meets another one but in a vertex; vertices that facets share stay shared.
 
 mod area;
+mod energy;
 mod rings;
 mod ways;
 
 use nalgebra::{Point2, Vector2};
 
 use self::area::PlanArea;
+pub(super) use self::energy::OutlineEnergy;
 use self::rings::{Chain, Links, Rings};
-use super::borders::{Arrangement, LineIndex, border_share};
+use super::borders::border_share;
 use super::delineation::{Delineation, Outline};
 use crate::evidence::CornerTable;
-use crate::geometry::Plane;
 
 /// Sides are rated in pieces of this length, metres: lines that are no farther away run along them.
 const PIECE_M: f64 = 0.25;
 
 /// Energies that differ by less are the same, nats.
 const ROUNDING_NATS: f64 = 1e-6;
-
-/// What the energy of outlines is made of.
-pub(super) struct OutlineEnergy<'a> {
-    /// The cells that the outlines are made of.
-    pub arrangement: &'a Arrangement,
-    /// The plane of every label.
-    pub planes: &'a [Plane],
-    /// The reconstructed lines.
-    pub lines: &'a LineIndex,
-    /// Cost of a metre of border that no line supports, nats.
-    pub border_nats_per_m: f64,
-    /// What a plane costs in a cell, nats; `None` where it may not cover it.
-    pub cost: &'a (dyn Fn(usize, u32) -> Option<f64> + Sync),
-}
 
 /// A simpler way between two vertices of a chain.
 struct Move {
@@ -193,8 +181,9 @@ fn corner(a: Point2<f64>, b: Point2<f64>, c: Point2<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::facets::borders::{Border, BorderKind};
+    use crate::facets::borders::{Arrangement, Border, BorderKind, LineIndex};
     use crate::facets::delineation::delineate;
+    use crate::geometry::Plane;
     use crate::labelling::NO_PLANE;
     use nalgebra::Vector3;
 
