@@ -4,7 +4,7 @@
 pub(crate) const NO_PLANE: u32 = u32::MAX;
 
 /// What different labels on both sides of a border cost.
-pub(crate) trait PairwiseCosts {
+pub(crate) trait PairwiseCosts: Sync {
     /// Cost of `left` and `right`, which differ, on the first and the second cell of an edge.
     fn cost(&self, edge: usize, left: u32, right: u32) -> f64;
 

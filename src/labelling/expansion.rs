@@ -1,5 +1,7 @@
 //! The labelling of least energy, by alpha-expansion (Boykov, Veksler, Zabih 2001).
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use super::cut::MinimumCut;
 use super::energy::{Energy, NO_PLANE, PairwiseCosts};
 
@@ -17,9 +19,13 @@ pub(crate) struct Labelling<B> {
     labels: Vec<u32>,
     /// What each cell's label costs there.
     costs: Vec<f64>,
-    /// The node of each cell in the cut that is being made; none between cuts.
-    nodes: Vec<Option<u32>>,
+    /// The node of each cell in a cut that is being made, or [`NO_NODE`]; cuts that are made at a
+    /// time have no cell in common.
+    nodes: Vec<AtomicU32>,
 }
+
+/// The cell is in no cut.
+const NO_NODE: u32 = u32::MAX;
 
 /// A cell that may change to the plane of an expansion.
 struct Movable {
@@ -37,7 +43,7 @@ impl<B: PairwiseCosts> Labelling<B> {
             clock: ExpansionHistory::new(cells, planes),
             labels: vec![NO_PLANE; cells],
             costs: vec![0.0; cells],
-            nodes: vec![None; cells],
+            nodes: (0..cells).map(|_| AtomicU32::new(NO_NODE)).collect(),
             energy,
         }
     }
@@ -47,19 +53,30 @@ impl<B: PairwiseCosts> Labelling<B> {
         &self.labels
     }
 
-    /// Goes on until no single expansion around a change improves.
+    /// Goes on until no single expansion around a change improves: plane by plane, in their order.
     pub(crate) fn minimise(&mut self) {
         const ROUNDS: usize = 8;
-        let planes = self.graph.surroundings_of_plane.len() as u32;
         for _ in 0..ROUNDS {
             let start = self.clock.now;
-            for plane in (0..planes).chain([NO_PLANE]) {
-                let changed = self.expand(plane);
-                self.clock.tried(plane, &changed);
+            for planes in 0..self.graph.independent_planes.len() {
+                let planes = self.graph.independent_planes[planes].clone();
+                self.expand_independent(&planes, start);
             }
+            let last = start + 1 + self.graph.surroundings_of_plane.len() as u32;
+            let changed = self.expand(NO_PLANE);
+            self.clock.tried(NO_PLANE, &changed, last);
             if !self.clock.changed_since(start) {
                 break;
             }
+        }
+    }
+
+    /// Expands planes that have no cell in common: it does not matter in which order.
+    fn expand_independent(&mut self, planes: &[u32], start: u32) {
+        let moves = crate::execution::map(planes, |_, &plane| self.expansion(plane));
+        for (&plane, moves) in planes.iter().zip(moves) {
+            let changed = self.apply(plane, moves);
+            self.clock.tried(plane, &changed, start + 1 + plane);
         }
     }
 
@@ -85,22 +102,32 @@ impl<B: PairwiseCosts> Labelling<B> {
         self.clock.changed(cells);
     }
 
-    /// The best move in which cells around what is new to `alpha` may change to it; returns those
-    /// that do.
+    /// Makes the best move to `alpha`; returns the cells that change.
     fn expand(&mut self, alpha: u32) -> Vec<usize> {
-        let movable = self.movable_around_news(alpha);
+        let moves = self.expansion(alpha);
+        self.apply(alpha, moves)
+    }
+
+    /// The best move in which cells around what is new to `alpha` may change to it: those that do.
+    fn expansion(&self, alpha: u32) -> Vec<Movable> {
+        let mut movable = self.movable_around_news(alpha);
         if movable.is_empty() {
-            return Vec::new();
+            return movable;
         }
-        let moves = self.cut(alpha, &movable).solve();
-        let mut changed = Vec::new();
-        for (&Movable { cell, change }, moves) in movable.iter().zip(moves) {
-            self.nodes[cell] = None;
-            if moves {
-                self.labels[cell] = alpha;
-                self.costs[cell] = change;
-                changed.push(cell);
-            }
+        let mut moves = self.cut(alpha, &movable).solve().into_iter();
+        for &Movable { cell, .. } in &movable {
+            self.nodes[cell].store(NO_NODE, Ordering::Relaxed);
+        }
+        movable.retain(|_| moves.next() == Some(true));
+        movable
+    }
+
+    fn apply(&mut self, alpha: u32, moves: Vec<Movable>) -> Vec<usize> {
+        let mut changed = Vec::with_capacity(moves.len());
+        for Movable { cell, change } in moves {
+            self.labels[cell] = alpha;
+            self.costs[cell] = change;
+            changed.push(cell);
         }
         changed
     }
@@ -108,7 +135,7 @@ impl<B: PairwiseCosts> Labelling<B> {
     /// The cells that may change to `alpha`, as nodes in the order of the list: those that changed
     /// themselves since it was last tried or lie beside one, and what is connected with them by
     /// such cells, some rings far.
-    fn movable_around_news(&mut self, alpha: u32) -> Vec<Movable> {
+    fn movable_around_news(&self, alpha: u32) -> Vec<Movable> {
         let (labels, energy, graph) = (&self.labels, &self.energy, &self.graph);
         let costs = &self.costs;
         let change = |cell: usize| {
@@ -120,12 +147,12 @@ impl<B: PairwiseCosts> Labelling<B> {
             // their neighbours do; where it costs more than all borders, no plane is always better.
             (costs[cell] - change + bound >= 0.0 && change <= bound).then_some(change)
         };
-        let (nodes, mut movable) = (&mut self.nodes, Vec::new());
-        let mut reach = |cell: usize, movable: &mut Vec<Movable>| {
-            if nodes[cell].is_none()
+        let mut movable = Vec::new();
+        let reach = |cell: usize, movable: &mut Vec<Movable>| {
+            if self.node(cell).is_none()
                 && let Some(change) = change(cell)
             {
-                nodes[cell] = Some(movable.len() as u32);
+                self.nodes[cell].store(movable.len() as u32, Ordering::Relaxed);
                 movable.push(Movable { cell, change });
             }
         };
@@ -161,7 +188,7 @@ impl<B: PairwiseCosts> Labelling<B> {
                 // What a border costs depends on which side of it a plane lies.
                 let i_moves = || energy.border(edge, alpha, labels[j]);
                 let j_moves = || energy.border(edge, labels[i], alpha);
-                match self.nodes[beside.cell as usize] {
+                match self.node(beside.cell as usize) {
                     // Both may move: handle the edge once, from its first cell.
                     Some(other) if cell == i => {
                         cut.pair(n, other as usize, stay(), j_moves(), i_moves());
@@ -173,6 +200,12 @@ impl<B: PairwiseCosts> Labelling<B> {
             }
         }
         cut
+    }
+
+    /// The node of a cell in the cut that is being made.
+    fn node(&self, cell: usize) -> Option<u32> {
+        let node = self.nodes[cell].load(Ordering::Relaxed);
+        (node != NO_NODE).then_some(node)
     }
 }
 
@@ -191,6 +224,9 @@ struct CellGraph {
     /// The cells that each plane may cover at all and those beside them: where a change concerns
     /// the plane.
     surroundings_of_plane: Vec<Vec<u32>>,
+    /// The planes in groups that have no surroundings in common: a plane comes after all those
+    /// before it that concern the same cells.
+    independent_planes: Vec<Vec<u32>>,
     all: Vec<u32>,
     /// What lies beside cell c is `beside[starts[c]..starts[c + 1]]`.
     starts: Vec<u32>,
@@ -227,13 +263,30 @@ impl CellGraph {
         }
         let mut graph = Self {
             surroundings_of_plane: Vec::new(),
+            independent_planes: Vec::new(),
             all: (0..cells as u32).collect(),
             starts,
             beside,
             border_bound,
         };
         graph.surroundings_of_plane = graph.surroundings(energy, planes);
+        graph.independent_planes = graph.independent(cells);
         graph
+    }
+
+    fn independent(&self, cells: usize) -> Vec<Vec<u32>> {
+        let mut groups: Vec<Vec<u32>> = Vec::new();
+        // By cell the first group that may still concern it.
+        let mut open = vec![0; cells];
+        for (plane, cells) in (0..).zip(&self.surroundings_of_plane) {
+            let first = cells.iter().map(|&c| open[c as usize]).max().unwrap_or(0);
+            cells.iter().for_each(|&c| open[c as usize] = first + 1);
+            if groups.len() == first {
+                groups.push(Vec::new());
+            }
+            groups[first].push(plane);
+        }
+        groups
     }
 
     /// Per plane the cells that it may cover and those beside them, each once.
@@ -302,11 +355,13 @@ impl ExpansionHistory {
         cells.iter().for_each(|&c| self.changed[c] = self.now);
     }
 
-    fn tried(&mut self, plane: u32, changed: &[usize]) {
-        self.changed(changed);
+    /// The plane was tried at `time`, as the one after all before it in the list.
+    fn tried(&mut self, plane: u32, changed: &[usize], time: u32) {
+        self.now = self.now.max(time);
+        changed.iter().for_each(|&c| self.changed[c] = time);
         // The plane's own changes are no reason to try it again.
         let slot = self.slot(plane);
-        self.tried[slot] = self.now;
+        self.tried[slot] = time;
     }
 
     fn changed_since(&self, time: u32) -> bool {
@@ -369,8 +424,8 @@ mod tests {
             let mut labelling = Labelling::new(energy, 3);
             let mut before = labelling.energy.of(&labelling.labels);
             for plane in [0, 1, 2, NO_PLANE, 0, 1, 2, NO_PLANE] {
-                let changed = labelling.expand(plane);
-                labelling.clock.tried(plane, &changed);
+                let (changed, time) = (labelling.expand(plane), labelling.clock.now + 1);
+                labelling.clock.tried(plane, &changed, time);
                 let after = labelling.energy.of(&labelling.labels);
                 assert!(after < before + 1e-4, "seed {seed}: {before} to {after}");
                 before = after;

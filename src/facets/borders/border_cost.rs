@@ -9,7 +9,7 @@
 use nalgebra::{Point2, Vector2};
 
 use super::arrangement::{Arrangement, CellEdge};
-use super::line_index::LineIndex;
+use super::line_index::{LineIndex, heights_at};
 use crate::geometry::Plane;
 use crate::labelling::{NO_PLANE, PairwiseCosts};
 use crate::math::{larger, smaller};
@@ -55,21 +55,30 @@ impl BorderCosts {
     }
 }
 
-/// Share of the full cost of a border between two positions, between the planes to its left and
-/// right or none.
-pub(crate) fn border_share(
+/// Mean share of the full cost of a side, in pieces that are no longer than `piece_m`, between the
+/// planes to its left and right or none.
+pub(crate) fn side_share(
     index: &LineIndex,
-    ends: [Point2<f64>; 2],
+    [a, b]: [&Point2<f64>; 2],
+    piece_m: f64,
     left: Option<&Plane>,
     right: Option<&Plane>,
 ) -> f64 {
-    let border = CellBorder {
-        full: 1.0,
-        registered: 0.0,
-        heights: index.heights_along(&ends[0], &ends[1]),
-        ends,
+    let lines = index.along([a, b], [*a, *b]);
+    let pieces = ((b - a).norm() / piece_m).ceil().max(1.0);
+    let at = |k: f64| a + (b - a) * (k / pieces);
+    let share = |k: usize| {
+        let ends = [at(k as f64), at((k + 1) as f64)];
+        let middle = at(k as f64 + 0.5);
+        let piece = CellBorder {
+            full: 1.0,
+            registered: 0.0,
+            heights: heights_at(&middle, &lines),
+            ends,
+        };
+        piece.share(left, right)
     };
-    border.share(left, right)
+    (0..pieces as usize).map(share).sum::<f64>() / pieces
 }
 
 impl PairwiseCosts for BorderCosts {

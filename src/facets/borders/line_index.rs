@@ -25,28 +25,39 @@ impl LineIndex {
     /// Heights of the lines that run along a -> b at its middle, ascending.
     pub(crate) fn heights_along(&self, a: &Point2<f64>, b: &Point2<f64>) -> Vec<f64> {
         let middle = Point2::from((a.coords + b.coords) * 0.5);
-        let d = (b - a) / (b - a).norm().max(1e-12);
-        let mut heights: Vec<f64> = self
-            .index
-            .touching([middle; 2], BESIDE_LINE)
-            .filter_map(|i| {
-                let line = &self.lines[i as usize];
-                let e = line.p1.xy() - line.p0.xy();
-                let length = e.norm();
-                if length < 1e-9 {
-                    return None;
-                }
-                let u = e / length;
-                let r = middle - line.p0.xy();
-                let t = r.dot(&u) / length;
-                let slack = BESIDE_LINE / length;
-                ((-slack..=1.0 + slack).contains(&t)
-                    && u.perp(&r).abs() < BESIDE_LINE
-                    && u.perp(&d).abs() < LINE_SINE)
-                    .then(|| line.at(t.clamp(0.0, 1.0)).z)
-            })
-            .collect();
-        heights.sort_by(f64::total_cmp);
-        heights
+        heights_at(&middle, &self.along([a, b], [middle; 2]))
     }
+
+    /// The lines that run along a -> b near a part of it.
+    pub(super) fn along(
+        &self,
+        [a, b]: [&Point2<f64>; 2],
+        part: [Point2<f64>; 2],
+    ) -> Vec<&Segment3> {
+        let d = (b - a) / (b - a).norm().max(1e-12);
+        let lines = self.index.touching(part, BESIDE_LINE);
+        lines
+            .map(|i| &self.lines[i as usize])
+            .filter(|line| {
+                let along = line.p1.xy() - line.p0.xy();
+                along.norm() > 1e-9 && along.perp(&d).abs() < LINE_SINE * along.norm()
+            })
+            .collect()
+    }
+}
+
+/// Heights of lines beside a place, ascending.
+pub(super) fn heights_at(place: &Point2<f64>, lines: &[&Segment3]) -> Vec<f64> {
+    let height = |line: &&Segment3| {
+        let along = line.p1.xy() - line.p0.xy();
+        let length = along.norm();
+        let (u, r) = (along / length, place - line.p0.xy());
+        let t = r.dot(&u) / length;
+        let slack = BESIDE_LINE / length;
+        ((-slack..=1.0 + slack).contains(&t) && u.perp(&r).abs() < BESIDE_LINE)
+            .then(|| line.at(t.clamp(0.0, 1.0)).z)
+    };
+    let mut heights: Vec<f64> = lines.iter().filter_map(height).collect();
+    heights.sort_by(f64::total_cmp);
+    heights
 }

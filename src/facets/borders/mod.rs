@@ -20,7 +20,7 @@ mod line_index;
 
 pub(crate) use arrangement::Arrangement;
 pub use border::{Border, BorderKind};
-pub(crate) use border_cost::{BorderCosts, LINE_HEIGHT, ON_LINE, border_share};
+pub(crate) use border_cost::{BorderCosts, LINE_HEIGHT, ON_LINE, side_share};
 pub(crate) use border_lines::border_lines;
 pub(crate) use bounding::bounding_lines;
 pub(crate) use line_index::LineIndex;

@@ -29,12 +29,12 @@ mod energy;
 mod rings;
 mod ways;
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::Point2;
 
 use self::area::PlanArea;
 pub(super) use self::energy::OutlineEnergy;
 use self::rings::{Chain, Links, Rings};
-use super::borders::border_share;
+use super::borders::{ON_LINE, side_share};
 use super::delineation::{Delineation, Outline};
 use crate::evidence::CornerTable;
 
@@ -50,10 +50,17 @@ struct Move {
     gain: f64,
     /// From this vertex of the chain to that one.
     stretch: [usize; 2],
-    /// The vertices between them.
-    between: Vec<Point2<f64>>,
+    /// The positions along the simpler way, with its ends.
+    way: Vec<Point2<f64>>,
     /// Samples of the area that changes hands.
     samples: Vec<usize>,
+}
+
+impl Move {
+    /// The vertices between the ends.
+    fn between(&self) -> &[Point2<f64>] {
+        &self.way[1..self.way.len() - 1]
+    }
 }
 
 impl OutlineEnergy<'_> {
@@ -69,15 +76,17 @@ impl OutlineEnergy<'_> {
         const MOST_ROUNDS: usize = 50;
         for _ in 0..MOST_ROUNDS {
             let mut changed = vec![false; found.outlines.len()];
-            let links = rings.links();
-            for chain in rings.chains() {
+            let (chains, links) = (rings.chains(), rings.links());
+            let found =
+                crate::execution::map(&chains, |_, chain| self.best(chain, &rings, &links, &area));
+            for (chain, best) in chains.iter().zip(found) {
                 // A chain knows places in the rings as they were when the round began.
-                if chain.facets().any(|f| changed[f]) {
-                    continue;
-                }
-                if let Some(best) = self.best(&chain, &rings, &links, &area) {
-                    rings.replace(&chain, best.stretch, &best.between);
-                    area.change_hands(&chain, &best.samples);
+                let is_known = !chain.facets().any(|f| changed[f]);
+                if let Some(best) = best.filter(|_| is_known)
+                    && !ways::meets_others(&best.way, chain, best.stretch, &rings)
+                {
+                    rings.replace(chain, best.stretch, best.between());
+                    area.change_hands(chain, &best.samples);
                     chain.facets().for_each(|f| changed[f] = true);
                 }
             }
@@ -104,21 +113,18 @@ impl OutlineEnergy<'_> {
     /// The move along a chain that takes most energy away.
     fn best(&self, chain: &Chain, rings: &Rings, links: &Links, area: &PlanArea) -> Option<Move> {
         let mut best: Option<Move> = None;
+        let own = chain.way(rings, [0, chain.vertices.len() - 1]);
+        let sides: Vec<f64> = (own.windows(2))
+            .map(|side| self.side(side, chain, area))
+            .collect();
         for [from, to] in chain.stretches() {
-            let old = chain.way(rings, [from, to]);
-            let costs = |way: &[Point2<f64>]| {
-                self.sides(way, chain, area) + corners(way, chain, [from, to], rings)
-            };
-            let before = costs(&old);
-            for between in ways::simpler(chain, [from, to], rings, links) {
-                let mut way = vec![old[0]];
-                way.extend(&between);
-                way.push(old[old.len() - 1]);
-                let saved = before - costs(&way);
-                let mut outline = old.clone();
+            let (old, stretch) = (&own[from..=to], [from, to]);
+            let before = sides[from..to].iter().sum::<f64>() + corners(old, chain, stretch, rings);
+            for between in ways::simpler(chain, stretch, rings, links) {
+                let mut outline = old.to_vec();
                 outline.extend(between.iter().rev());
                 let samples = area.inside(&[outline]);
-                let Some(gain) = area.gain(chain, &samples).map(|nats| saved + nats) else {
+                let Some(nats) = area.gain(chain, &samples) else {
                     continue;
                 };
                 // Of two ways that cost the same the one with fewer vertices is taken.
@@ -128,11 +134,20 @@ impl OutlineEnergy<'_> {
                     None if fewer => -ROUNDING_NATS,
                     None => ROUNDING_NATS,
                 };
-                if gain > so_far && !ways::meets_others(&way, chain, [from, to], rings) {
+                let mut way = vec![old[0]];
+                way.extend(between);
+                way.push(old[old.len() - 1]);
+                let most = before - corners(&way, chain, stretch, rings) + nats;
+                // Whatever lines run along it, the way costs something.
+                if most - self.least(&way) <= so_far {
+                    continue;
+                }
+                let gain = most - self.sides(&way, chain, area);
+                if gain > so_far && !ways::meets_others(&way, chain, stretch, rings) {
                     best = Some(Move {
                         gain,
-                        stretch: [from, to],
-                        between,
+                        stretch,
+                        way,
                         samples,
                     });
                 }
@@ -141,19 +156,24 @@ impl OutlineEnergy<'_> {
         best
     }
 
-    /// What the sides of a way cost, nats: V of the labelling.
+    /// What the sides of a way cost at least, nats.
+    fn least(&self, way: &[Point2<f64>]) -> f64 {
+        let length: f64 = way.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+        // Less by what rounding may add to the sum of many pieces.
+        ON_LINE * length * self.border_nats_per_m - ROUNDING_NATS
+    }
+
+    /// What the sides of a way cost, nats.
     fn sides(&self, way: &[Point2<f64>], chain: &Chain, area: &PlanArea) -> f64 {
+        way.windows(2).map(|w| self.side(w, chain, area)).sum()
+    }
+
+    /// What a side costs, by its two ends, nats: V of the labelling.
+    fn side(&self, ends: &[Point2<f64>], chain: &Chain, area: &PlanArea) -> f64 {
         let plane = |facet: usize| &self.planes[area.label(facet) as usize];
         let (left, right) = (plane(chain.left), chain.right.map(plane));
-        let side = |w: &[Point2<f64>]| {
-            let along: Vector2<f64> = w[1] - w[0];
-            let pieces = (along.norm() / PIECE_M).ceil().max(1.0);
-            let at = |k: usize| w[0] + along * (k as f64 / pieces);
-            let share = |k: usize| border_share(self.lines, [at(k), at(k + 1)], Some(left), right);
-            let shares: f64 = (0..pieces as usize).map(share).sum();
-            shares * along.norm() / pieces * self.border_nats_per_m
-        };
-        way.windows(2).map(side).sum()
+        let share = side_share(self.lines, [&ends[0], &ends[1]], PIECE_M, Some(left), right);
+        share * (ends[1] - ends[0]).norm() * self.border_nats_per_m
     }
 }
 
@@ -185,7 +205,7 @@ mod tests {
     use crate::facets::delineation::delineate;
     use crate::geometry::Plane;
     use crate::labelling::NO_PLANE;
-    use nalgebra::Vector3;
+    use nalgebra::{Vector2, Vector3};
 
     fn frame([x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) -> impl Iterator<Item = Border> {
         let c = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
