@@ -155,7 +155,7 @@ function Tiles({ plan, frame }: { plan: FlightPlan; frame: PlanFrame }) {
           >
             <title>
               {left_out === null
-                ? `Tile ${i + 1}: ${counted(views.length, "photographs")}, about ${memory_mb} MB`
+                ? `Tile ${i + 1}: ${doneTiles.value.get(i) ?? `${counted(views.length, "photographs")}, about ${memory_mb} MB`}`
                 : `Tile ${i + 1} is left out: ${left_out}`}
             </title>
           </rect>

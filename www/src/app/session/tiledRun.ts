@@ -13,11 +13,10 @@ import { addTileModel, NO_RESULTS, setExportNames, setResults } from "../state/r
 import { updateStage } from "../state/stages";
 import { showTab, tab } from "../state/viewState";
 import {
-  doneTiles,
+  addDoneTile,
   flightPlan,
   megapixelsLeft,
   megapixelsOf,
-  setDoneTiles,
   showTileRun,
 } from "../tiles/flight";
 import type { KeptTiles } from "../tiles/keptTiles";
@@ -59,7 +58,7 @@ export async function runTiles(turn: Turn, tileM: number): Promise<void> {
         seconds: (performance.now() - started) / 1000,
         counts: { tiles: reports.length },
         warnings: reports
-          .filter(({ outcome }) => !/ buildings?$/.test(outcome))
+          .filter(({ is_left_out }) => is_left_out)
           .map(({ outcome }) => outcome),
       });
     });
@@ -86,7 +85,7 @@ async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<Tile
     announce(`Tile ${index + 1} of ${tiles.length}`);
     const { report, glb } = (await keptOutcome(kept, index)) ?? (await workOff(kept, index, tiles.length));
     reports.push(report);
-    setDoneTiles(new Set([...doneTiles.value, index]));
+    addDoneTile(index, report.outcome);
     if (glb !== null) {
       addTileModel(glb);
       // The model is to be seen growing, unless something else is looked at.
