@@ -174,9 +174,9 @@ pub fn dense_planes(
     Ok((planes, trace))
 }
 
-/// The height above the ground, metres, of the highest place of the surfaces that the views agree on
-/// in a part of the plan (two corners of its box, metres, local frame), which is matched by itself
-/// as [`dense_planes`] matches all of it; `None` where there are none.
+/// The height above the ground, metres, of the highest place of the surfaces that the views agree
+/// on in a part of the plan (two corners of its box, metres, local frame), which is matched by
+/// itself as [`dense_planes`] matches all of it; `None` where there are none.
 pub fn highest_surface(
     scene: &Scene,
     lines: &[Line3d],

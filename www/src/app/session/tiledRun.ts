@@ -12,13 +12,7 @@ import { params } from "../state/parameters";
 import { addTileModel, NO_RESULTS, setExportNames, setResults } from "../state/results";
 import { updateStage } from "../state/stages";
 import { showTab, tab } from "../state/viewState";
-import {
-  addDoneTile,
-  flightPlan,
-  megapixelsLeft,
-  megapixelsOf,
-  showTileRun,
-} from "../tiles/flight";
+import { addDoneTile, flightPlan, megapixelsLeft, megapixelsOf, showTileRun } from "../tiles/flight";
 import type { KeptTiles } from "../tiles/keptTiles";
 import { noteTile, secondsPerMegapixel } from "../tiles/pace";
 import type { Turn } from "./actionQueue";
@@ -57,9 +51,7 @@ export async function runTiles(turn: Turn, tileM: number): Promise<void> {
         fraction: 1,
         seconds: (performance.now() - started) / 1000,
         counts: { tiles: reports.length },
-        warnings: reports
-          .filter(({ is_left_out }) => is_left_out)
-          .map(({ outcome }) => outcome),
+        warnings: reports.filter(({ is_left_out }) => is_left_out).map(({ outcome }) => outcome),
       });
     });
     announce(`${counted(reports.length, "tiles")} done and joined`);
