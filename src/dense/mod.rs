@@ -26,6 +26,8 @@ pub use surface_class::{SurfaceClass, SurfaceEvidence};
 
 use self::cloud::{Matched, compare};
 use self::least_rectangle::least_rectangle;
+use self::patch_match::PatchGrid;
+use self::region::Region;
 
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
@@ -35,6 +37,7 @@ use crate::execution::Sharded;
 use crate::geometry::{Plane, bounds};
 use crate::ids::ProposalOrigin;
 use crate::lines3d::Line3d;
+use crate::math::{larger, smaller};
 use crate::params::PointCloudParams;
 use crate::photoconsistency::{PlanGrid, WindowMatcher};
 use crate::planes::ProposedPlane;
@@ -117,19 +120,12 @@ pub fn dense_planes(
     ground: &Ground,
     params: &PointCloudParams,
 ) -> Sharded<(Vec<DensePlane>, DenseTrace)> {
-    let Some(extent) = extent(lines) else {
+    let Some(search) = Search::new(scene, lines) else {
         return Ok(Default::default());
     };
-    let reduced = scene.reduced(REDUCED);
-    let middle = nalgebra::center(&extent[0], &extent[1]);
-    let pixels = reduced.views.iter().map(|v| v.camera.ground_pixel(&middle));
-    let step = pixels.fold(f64::INFINITY, f64::min);
-    let z_per_pixel = step * height_by_base(&reduced, &middle);
-    let grid = PlanGrid::covering(extent[0].xy(), extent[1].xy(), SPACING * step);
-    let heights = [extent[0].z, extent[1].z];
-    let levels = sweep::best_levels(&reduced, &grid, step, heights, z_per_pixel)?;
-    let matcher = WindowMatcher::new(&reduced, step);
-    let found = patch_match::match_patches(&matcher, grid, &levels, z_per_pixel)?;
+    let (matcher, z_per_pixel) = (search.matcher(), search.z_per_pixel);
+    let grid = search.grid(search.extent.map(|p| p.xy()));
+    let found = search.matched(&matcher, grid)?;
     let places: Vec<usize> = (found.patches.iter())
         .scan(0, |n, patch| {
             let place = *n;
@@ -176,6 +172,79 @@ pub fn dense_planes(
         point_cloud,
     };
     Ok((planes, trace))
+}
+
+/// The height above the ground, metres, of the highest place of the surfaces that the views agree
+/// on in a part of the plan (two corners of its box, metres, local frame), which is matched by
+/// itself as [`dense_planes`] matches all of it; `None` where there are none.
+pub fn highest_surface(
+    scene: &Scene,
+    lines: &[Line3d],
+    ground: &Ground,
+    part: [Point2<f64>; 2],
+) -> Option<f64> {
+    let search = Search::new(scene, lines)?;
+    let [low, high] = search.extent;
+    let low = Point2::new(larger(low.x, part[0].x), larger(low.y, part[0].y));
+    let high = Point2::new(smaller(high.x, part[1].x), smaller(high.y, part[1].y));
+    if low.x >= high.x || low.y >= high.y {
+        return None;
+    }
+    let matcher = search.matcher();
+    let found = search.matched(&matcher, search.grid([low, high]));
+    let found = found.expect("nobody divides the maps of a part");
+    let regions = segmentation::segmented(&found, &matcher, search.z_per_pixel);
+    let above = |region: &Region, k: usize| {
+        let p = found.patches[k]?.middle;
+        Some(region.plane.z_at(p.x, p.y) - ground.z_at(&p))
+    };
+    let places = (regions.iter()).flat_map(|r| r.cells.iter().filter_map(move |&k| above(r, k)));
+    places.reduce(larger)
+}
+
+/// Where and how finely the surfaces of a scene are sought.
+struct Search {
+    reduced: Scene,
+    extent: [Point3<f64>; 2],
+    /// Distance of the positions compared, metres.
+    step: f64,
+    /// The change of height that moves the images by a pixel against each other, metres.
+    z_per_pixel: f64,
+}
+
+impl Search {
+    /// `None` where there are no lines.
+    fn new(scene: &Scene, lines: &[Line3d]) -> Option<Self> {
+        let extent = extent(lines)?;
+        let reduced = scene.reduced(REDUCED);
+        let middle = nalgebra::center(&extent[0], &extent[1]);
+        let pixels = reduced.views.iter().map(|v| v.camera.ground_pixel(&middle));
+        let step = pixels.fold(f64::INFINITY, f64::min);
+        let z_per_pixel = step * height_by_base(&reduced, &middle);
+        Some(Self {
+            reduced,
+            extent,
+            step,
+            z_per_pixel,
+        })
+    }
+
+    /// The grid of the patches of a box in plan.
+    fn grid(&self, [low, high]: [Point2<f64>; 2]) -> PlanGrid {
+        PlanGrid::covering(low, high, SPACING * self.step)
+    }
+
+    fn matcher(&self) -> WindowMatcher<'_> {
+        WindowMatcher::new(&self.reduced, self.step)
+    }
+
+    /// The patches of a grid.
+    fn matched(&self, matcher: &WindowMatcher, grid: PlanGrid) -> Sharded<PatchGrid> {
+        let heights = self.extent.map(|p| p.z);
+        let (step, z_per_pixel) = (self.step, self.z_per_pixel);
+        let levels = sweep::best_levels(&self.reduced, &grid, step, heights, z_per_pixel)?;
+        patch_match::match_patches(matcher, grid, &levels, z_per_pixel)
+    }
 }
 
 /// The box in which surfaces are sought: around the lines, which may be wrong in a few places.

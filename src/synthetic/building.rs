@@ -100,6 +100,18 @@ pub(crate) fn askew() -> SyntheticBuilding {
     )
 }
 
+/// The gable roof, and 29 m south-east of it a shed of 3.6 m by 2.8 m whose eaves are 2 m above the
+/// ground.
+pub(crate) fn gable_and_shed() -> SyntheticBuilding {
+    let place = Placement {
+        center: [29.0, -5.5],
+        eave_z: GROUND_Z + 2.0,
+        overhang: 0.1,
+        ..HOME
+    };
+    join(gable(), gable_at(place, [1.8, 1.4], 0.0, 5))
+}
+
 /// A gable roof whose ends are not square: parallelograms.
 pub(crate) fn sheared() -> SyntheticBuilding {
     gable_at(HOME, [6.0, 4.5], 0.4, 1)

@@ -69,6 +69,11 @@ pub fn askew_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::askew(), size)
 }
 
+/// The rectangular house, and a low shed 29 m to the south-east; 800 pixels show both.
+pub fn shed_scene(size: u32) -> (Scene, SyntheticTruth) {
+    scene_of(&building::gable_and_shed(), size)
+}
+
 /// A gable roof whose ends are not square: its facets are parallelograms.
 pub fn sheared_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::sheared(), size)

@@ -11,9 +11,11 @@ use serde_json::json;
 use super::division::Division;
 use super::join::{CellPart, Joined, join};
 use super::tile::{Cell, Tile};
+use super::vacancy::{self, ASKED_AFTER};
 use crate::error::{Error, Result};
 use crate::execution::Listener;
 use crate::ids::ViewId;
+use crate::model::RoofModel;
 use crate::objectspace::{image_segments, world_lines};
 use crate::orientation::{FileSource, InputFile};
 use crate::params::{Method, Params};
@@ -45,8 +47,10 @@ pub struct Area {
 pub struct TileReport {
     /// The part of the area that it is responsible for: x0, y0, x1, y1, metres.
     pub core: [f64; 4],
-    /// How many buildings it found, or why it was left out.
+    /// How many buildings it found, and which of its squares ended early, or why it was left out.
     pub outcome: String,
+    /// Was none of its squares reconstructed?
+    pub is_left_out: bool,
 }
 
 impl Area {
@@ -215,6 +219,7 @@ pub(super) fn work_off(
     progress: &Listener,
 ) -> Result<WorkedTile> {
     let mut parts = Vec::new();
+    let mut vacant = 0;
     let mut first_error = None;
     let count = tile.cells.len() as f64;
     for (i, cell) in tile.cells.iter().enumerate() {
@@ -226,7 +231,11 @@ pub(super) fn work_off(
         let listener: Listener = Arc::new(move |fraction| of_tile((i as f64 + fraction) / count));
         let planned = PlannedScene::new(source, &options)?;
         match planned.load(source.files()) {
-            Ok(scene) => parts.push(part(scene, params, cell, whole, &listener)),
+            Ok(scene) => {
+                let (part, is_vacant) = part(scene, params, cell, whole, &listener);
+                parts.push(part);
+                vacant += usize::from(is_vacant);
+            }
             Err(error) => {
                 first_error.get_or_insert(error);
             }
@@ -237,14 +246,31 @@ pub(super) fn work_off(
     let buildings = parts.iter().map(|part| part.model.buildings.len()).sum();
     let outcome = match &first_error {
         Some(error) if parts.is_empty() => error.to_string(),
-        _ => counted(buildings, "buildings"),
+        _ => in_words(buildings, vacant, tile.cells.len()),
     };
-    let core = tile.core;
     Ok(WorkedTile {
-        report: TileReport { core, outcome },
+        report: TileReport {
+            core: tile.core,
+            outcome,
+            is_left_out: parts.is_empty(),
+        },
         parts,
         first_error,
     })
+}
+
+/// What was found in the squares of a tile, so many of which hold no building and ended early.
+fn in_words(buildings: usize, vacant: usize, squares: usize) -> String {
+    let stage = ASKED_AFTER.title().to_lowercase();
+    match (vacant, buildings) {
+        (0, _) => counted(buildings, "buildings"),
+        (_, 0) if vacant == squares => format!("no building here, ended after the {stage}"),
+        _ => format!(
+            "{}; {vacant} of {} ended after the {stage}: no building there",
+            counted(buildings, "buildings"),
+            counted(squares, "squares")
+        ),
+    }
 }
 
 /// Joins the parts of all cells in the order of the grid, whatever the tiles were.
@@ -281,34 +307,45 @@ pub(super) fn model_files(
     files
 }
 
-/// What one cell shows.
+/// What one cell shows, and whether it ended early because there is no building.
 fn part(
     scene: Scene,
     params: &Params,
     cell: &Cell,
     whole: &Scene,
     progress: &Listener,
-) -> CellPart {
+) -> (CellPart, bool) {
     let views = places(&scene, whole);
     let mut run = Run::new(scene, params.clone());
     let stages: Vec<Stage> = (run.stages().into_iter())
         .filter(|&stage| stage != Stage::Model)
         .collect();
+    let mut is_vacant = false;
     for (i, &stage) in stages.iter().enumerate() {
         let (done, all) = (i as f64, stages.len() as f64);
         let of_cell = Listener::clone(progress);
         let listener: Listener = Arc::new(move |fraction| of_cell((done + fraction) / all));
         run.step(stage, &listener);
+        is_vacant = stage == ASKED_AFTER && vacancy::is_vacant(&run, cell);
+        if is_vacant {
+            break;
+        }
     }
     let (scene, results) = (run.scene(), run.results());
-    let all = results.roof_model().expect("the stages have run");
-    let model = cell.keep(all, &scene.origin);
-    let (textured, _) = texture_model(scene, &model, &params.texture);
     let found = "the stages have run";
+    let model = match is_vacant {
+        true => RoofModel::default(),
+        false => cell.keep(results.roof_model().expect(found), &scene.origin),
+    };
+    let (textured, _) = texture_model(scene, &model, &params.texture);
     let (segments, lines, half_planes) = match params.method {
         Method::Lines | Method::Combined | Method::Coplanar | Method::Adjacency => (
             results.segments.as_ref().expect(found).value.clone(),
-            results.all_lines().expect(found),
+            // Without facets nothing contradicts them.
+            (results.all_lines()).unwrap_or_else(|| {
+                let lines = results.lines.as_ref();
+                lines.expect(found).value.clone()
+            }),
             results.half_planes.as_ref().expect(found).value.clone(),
         ),
         Method::Rectangles => {
@@ -318,7 +355,7 @@ fn part(
             (segments, world_lines(scene, lines, clusters), Vec::new())
         }
     };
-    CellPart {
+    let part = CellPart {
         cell: *cell,
         origin: scene.origin,
         views,
@@ -328,7 +365,8 @@ fn part(
         candidates: results.candidates(),
         model,
         textured,
-    }
+    };
+    (part, is_vacant)
 }
 
 /// Where the parts of the views lie in the whole images, pixels.

@@ -6,6 +6,7 @@
 //! model_parts  buildings of a model in another model and frame
 //! join         one model: each building once, ids renumbered, whole images, one atlas
 //! area         one cell after the other
+//! vacancy      may a cell hold a building, or does it end early?
 //! kept         outcomes of its tiles as bytes, to go on from
 //! fields       what the bytes of a part hold beyond what its types write by themselves
 //! part_file    a part as a file: whose it is, and whether it is whole
@@ -30,6 +31,7 @@ mod model_parts;
 mod part_file;
 mod plan;
 mod tile;
+mod vacancy;
 
 pub use area::{Area, TileReport, refuse_corrections};
 pub use division::{FlightPlan, TilePlan};

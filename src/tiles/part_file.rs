@@ -125,6 +125,7 @@ mod tests {
         let report = TileReport {
             core: [0.0, 1.0, 2.0, 3.0],
             outcome: "no view shows it".to_owned(),
+            is_left_out: false,
         };
         let bytes = KEY.pack(&TileOutcome {
             report: report.clone(),

@@ -23,7 +23,7 @@ pub const MARGIN_M: f64 = 30.0;
 
 /// Buildings whose middle lies this far beyond the core are kept until the cells are joined,
 /// metres: the neighbour may see their middle on this side.
-const SLACK_M: f64 = 3.0;
+pub(super) const SLACK_M: f64 = 3.0;
 
 /// Most cells of an area.
 const MOST_CELLS: f64 = 400_000.0;

@@ -51,13 +51,16 @@ impl Chain {
         std::iter::once(self.left).chain(self.right)
     }
 
-    /// The stretches of two sides and more, by their first and last vertex.
+    /// The stretches of two sides and more, by their first and last vertex. Of a chain that is a
+    /// whole ring three vertices stay.
     pub(super) fn stretches(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         let n = self.vertices.len();
-        // Of a closed one two other vertices stay.
-        let (starts, most) = match self.is_closed {
-            true => (n / 2, MOST_REMOVED.min((n / 2).saturating_sub(3))),
-            false => (n, MOST_REMOVED),
+        // A ring that meets others in one vertex begins and ends there.
+        let is_loop = self.vertices.first() == self.vertices.last();
+        let (starts, most) = match (self.is_closed, is_loop) {
+            (true, _) => (n / 2, MOST_REMOVED.min((n / 2).saturating_sub(3))),
+            (false, true) => (n, MOST_REMOVED.min(n.saturating_sub(4))),
+            (false, false) => (n, MOST_REMOVED),
         };
         (0..starts).flat_map(move |i| (i + 2..n.min(i + most + 2)).map(move |j| [i, j]))
     }
@@ -191,6 +194,44 @@ impl Rings {
             let n = right.len();
             right.rotate_left((p.index + 3 * n - to) % n);
             right.splice(..removed, way.into_iter().rev());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facets::delineation::Outline;
+
+    #[test]
+    fn of_a_ring_that_meets_another_in_one_vertex_three_vertices_stay() {
+        let at = |[x, y]: [f64; 2]| Point2::new(x, y);
+        let places = [[0.0, 0.0], [9.0, 0.0], [9.0, 6.0], [0.0, 6.0]];
+        let beyond = [[12.0, 6.0], [14.0, 8.0], [12.0, 9.0], [9.0, 8.0]];
+        let outline = |plane: u32, outer: Vec<usize>| Outline {
+            plane,
+            outer,
+            holes: Vec::new(),
+            cells: Vec::new(),
+        };
+        let found = Delineation {
+            vertices: places.into_iter().chain(beyond).map(at).collect(),
+            outlines: vec![
+                outline(0, vec![0, 1, 2, 3]),
+                outline(1, vec![2, 4, 5, 6, 7]),
+            ],
+        };
+        let chains = Rings::new(&found, &[true, true]).chains();
+        assert_eq!(chains.len(), 2);
+        for chain in chains {
+            let around = Rings::new(&found, &[true, true]);
+            let ring = around.rings[chain.in_left.ring].vertices.len();
+            assert_eq!(chain.vertices.len(), ring + 1);
+            let left = |[from, to]: [usize; 2]| ring - (to - from - 1);
+            assert_eq!(chain.stretches().map(left).min(), Some(3));
+            let mut rings = around;
+            let last = chain.stretches().last().expect("there is one");
+            rings.replace(&chain, last, &[]);
         }
     }
 }

@@ -111,7 +111,7 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
     let mut most_seen = vec![1; cameras.len()];
     for &z in &heights {
         let counts = views_together(&cameras_only, z);
-        if counts.iter().any(|&n| n >= 3) {
+        if counts.iter().any(|&n| n >= ENOUGH) {
             let [low, high] = found.heights.unwrap_or([z, z]);
             found.heights = Some([low.min(z), high.max(z)]);
         }
@@ -119,7 +119,7 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
             *most = n.max(*most);
         }
     }
-    let alone = || (0..cameras.len()).filter(|&i| most_seen[i] < 3);
+    let alone = || (0..cameras.len()).filter(|&i| most_seen[i] < ENOUGH);
     if found.heights.is_none() {
         let place = match ground_z {
             Some(z) => format!("at the ground height {z:.1} m"),
@@ -145,11 +145,14 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
 /// A point this far outside an image still counts as seen, pixels: rounding.
 const BORDER_PX: f64 = 0.5;
 
+/// So many views of a place are enough.
+const ENOUGH: usize = 3;
+
 /// Samples along each side of an image for the overlap.
 const GRID: u32 = 4;
 
-/// For each view, the greatest number of views (itself included; counted up to three, which is all
-/// that matters) that see one of its sample points on the ground at height `z`.
+/// For each view, the greatest number of views (itself included; counted up to [`ENOUGH`], which is
+/// all that matters) that see one of its sample points on the ground at height `z`.
 fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
     let footprints = PlanIndex::new(cameras.iter().map(|camera| footprint(camera, z)));
     cameras
@@ -160,13 +163,17 @@ fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
                 let near = near.map(|i| cameras[i as usize]);
                 let sees =
                     |c: &&Camera| (c.project(world)).is_some_and(|p| c.contains(&p, -BORDER_PX));
-                near.filter(sees).take(3).count()
+                near.filter(sees).take(ENOUGH).count()
             };
-            samples(camera)
-                .filter_map(|p| camera.at_height(&p, z))
-                .map(|world| seen_by(&world))
-                .max()
-                .unwrap_or(0)
+            let mut most = 0;
+            for world in samples(camera).filter_map(|p| camera.at_height(&p, z)) {
+                most = most.max(seen_by(&world));
+                // No place counts for more; of a flight the first ones do.
+                if most == ENOUGH {
+                    break;
+                }
+            }
+            most
         })
         .collect()
 }

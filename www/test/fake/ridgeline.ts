@@ -587,7 +587,7 @@ export class Session implements CoreSession {
   }
 
   tileModel(): { report: TileReport; glb: undefined } {
-    return { report: { core: [0, 0, 50, 50], outcome: "1 building" }, glb: undefined };
+    return { report: { core: [0, 0, 50, 50], outcome: "1 building", is_left_out: false }, glb: undefined };
   }
 
   takeTile(): void {}

@@ -145,6 +145,7 @@ function Tiles({ plan, frame }: { plan: FlightPlan; frame: PlanFrame }) {
               : doneTiles.value.has(i)
                 ? "done"
                 : "waiting";
+        const size = `${counted(views.length, "photographs")}, about ${memory_mb} MB`;
         return (
           <rect
             key={core.join()}
@@ -155,7 +156,7 @@ function Tiles({ plan, frame }: { plan: FlightPlan; frame: PlanFrame }) {
           >
             <title>
               {left_out === null
-                ? `Tile ${i + 1}: ${counted(views.length, "photographs")}, about ${memory_mb} MB`
+                ? `Tile ${i + 1}: ${doneTiles.value.get(i) ?? size}`
                 : `Tile ${i + 1} is left out: ${left_out}`}
             </title>
           </rect>

@@ -12,14 +12,7 @@ import { params } from "../state/parameters";
 import { addTileModel, NO_RESULTS, setExportNames, setResults } from "../state/results";
 import { updateStage } from "../state/stages";
 import { showTab, tab } from "../state/viewState";
-import {
-  doneTiles,
-  flightPlan,
-  megapixelsLeft,
-  megapixelsOf,
-  setDoneTiles,
-  showTileRun,
-} from "../tiles/flight";
+import { addDoneTile, flightPlan, megapixelsLeft, megapixelsOf, showTileRun } from "../tiles/flight";
 import type { KeptTiles } from "../tiles/keptTiles";
 import { noteTile, secondsPerMegapixel } from "../tiles/pace";
 import type { Turn } from "./actionQueue";
@@ -58,9 +51,7 @@ export async function runTiles(turn: Turn, tileM: number): Promise<void> {
         fraction: 1,
         seconds: (performance.now() - started) / 1000,
         counts: { tiles: reports.length },
-        warnings: reports
-          .filter(({ outcome }) => !/ buildings?$/.test(outcome))
-          .map(({ outcome }) => outcome),
+        warnings: reports.filter(({ is_left_out }) => is_left_out).map(({ outcome }) => outcome),
       });
     });
     announce(`${counted(reports.length, "tiles")} done and joined`);
@@ -86,7 +77,7 @@ async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<Tile
     announce(`Tile ${index + 1} of ${tiles.length}`);
     const { report, glb } = (await keptOutcome(kept, index)) ?? (await workOff(kept, index, tiles.length));
     reports.push(report);
-    setDoneTiles(new Set([...doneTiles.value, index]));
+    addDoneTile(index, report.outcome);
     if (glb !== null) {
       addTileModel(glb);
       // The model is to be seen growing, unless something else is looked at.

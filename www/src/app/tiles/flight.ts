@@ -23,7 +23,7 @@ const present = {
   plan: signal<FlightPlan | null>(null),
   measured: signal<[number, number] | null>(null),
   reduction: signal(1),
-  done: signal<ReadonlySet<number>>(new Set()),
+  done: signal<ReadonlyMap<number, string | null>>(new Map()),
   run: signal<TileRun | null>(null),
 };
 
@@ -33,8 +33,8 @@ export const flightPlan: ReadonlySignal<FlightPlan | null> = present.plan;
 export const measuredHeights: ReadonlySignal<[number, number] | null> = present.measured;
 /** So many by so many pixels of a photograph are one of the plan's. */
 export const plannedReduction: ReadonlySignal<number> = present.reduction;
-/** The tiles whose outcome is kept. */
-export const doneTiles: ReadonlySignal<ReadonlySet<number>> = present.done;
+/** The tiles whose outcome is kept, each with its words; null until it was read. */
+export const doneTiles: ReadonlySignal<ReadonlyMap<number, string | null>> = present.done;
 export const tileRun: ReadonlySignal<TileRun | null> = present.run;
 
 /** The tiles that show something, by their number from 0. */
@@ -48,7 +48,7 @@ export const photographsRead = computed(() => {
   const read = (of: readonly number[]) =>
     new Set(of.flatMap((i) => (tiles[i]?.views ?? []).map(({ view }) => view))).size;
   const begun = tileRun.value === null ? [] : [tileRun.value.tile];
-  return { done: read([...doneTiles.value, ...begun]), all: read(usedTiles.value) };
+  return { done: read([...doneTiles.value.keys(), ...begun]), all: read(usedTiles.value) };
 });
 
 export function showFlightPlan(plan: FlightPlan | null, reduction = 1): void {
@@ -61,7 +61,11 @@ export function setMeasuredHeights(heights: [number, number] | null): void {
 }
 
 export function setDoneTiles(done: ReadonlySet<number>): void {
-  present.done.value = done;
+  present.done.value = new Map([...done].map((tile) => [tile, null]));
+}
+
+export function addDoneTile(tile: number, outcome: string): void {
+  present.done.value = new Map([...present.done.peek(), [tile, outcome]]);
 }
 
 export function showTileRun(run: TileRun | null): void {
