@@ -1,7 +1,8 @@
 //! Orientation files: recognised by their content, read into one form.
 //!
 //! ```text
-//! input_file         a file in memory, or the first bytes of a photograph
+//! input_file         a file in memory, or the head of a photograph
+//! photograph_head    what of a photograph is read to plan with it
 //! image_orientation  interior and exterior orientation of one image: what every reader returns
 //! angles             omega, phi, kappa and their units
 //! geodesy            the ellipsoid, and the anchor of a local frame on it
@@ -42,6 +43,7 @@ mod geodesy;
 mod image_orientation;
 mod input_file;
 mod metric_frame;
+mod photograph_head;
 mod reference;
 mod sets;
 mod transverse_mercator;
@@ -61,6 +63,7 @@ pub use image_orientation::{Crop, Orientation};
 pub(crate) use input_file::stem;
 pub use input_file::{FileSource, InputFile};
 pub use metric_frame::to_metric_frame;
+pub use photograph_head::PhotographHead;
 pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};
 pub(crate) use transverse_mercator::TransverseMercator;

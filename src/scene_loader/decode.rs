@@ -39,8 +39,8 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
         None => unreduced,
     };
     let mut photograph = match unreduced == [0, 0, full_width, full_height] {
-        true => load_image(&file.path, &file.bytes)?,
-        false => load_window(&file.path, &file.bytes, stored)?,
+        true => load_image(&file.path, file.content())?,
+        false => load_window(&file.path, file.content(), stored)?,
     };
     if photograph.rgb.dimensions() != (stored[2], stored[3]) {
         return Err(Error::File {

@@ -130,7 +130,7 @@ pub fn ground_heights(files: &[InputFile], options: &LoadOptions) -> Option<[f64
     Some(heights.map(|z| z + whole.origin.z))
 }
 
-/// Indices of the files in whose pixels [`ground_heights`] measures. Of the files their first bytes
+/// Indices of the files in whose pixels [`ground_heights`] measures. Of the files their heads
 /// suffice.
 pub fn ground_files(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
     files_near(&unreduced_plan(files, options), None)
@@ -138,7 +138,7 @@ pub fn ground_files(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
 
 /// Indices of the files in whose pixels [`settled`] and
 /// [`ShownArea`](super::ShownArea) measure the height of the ground: none where nothing is open. Of
-/// the files their first bytes suffice.
+/// the files their heads suffice.
 pub fn files_of_settling(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
     let is_settled = options.reduction.is_some() && options.roi.is_some();
     if options.ground_z.is_some() || is_settled {
@@ -153,7 +153,7 @@ pub fn files_of_settling(files: &[InputFile], options: &LoadOptions) -> Vec<usiz
 
 /// Indices of the files in whose pixels loading measures the height of the ground, before it
 /// decides by how much photographs are reduced, and before it chooses views: none where both are
-/// known. Of the files their first bytes suffice. Flights state the first: see [`settled`].
+/// known. Of the files their heads suffice. Flights state the first: see [`settled`].
 pub fn files_of_ground(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
     if options.ground_z.is_some() {
         return Vec::new();
@@ -172,7 +172,7 @@ pub fn files_of_ground(files: &[InputFile], options: &LoadOptions) -> Vec<usize>
     needed
 }
 
-/// Indices of the files whose pixels loading makes views of. Of these their first bytes suffice, of
+/// Indices of the files whose pixels loading makes views of. Of these their heads suffice, of
 /// [`files_of_ground`] all are needed.
 pub fn files_of_views(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
     let plan = plan_scene(files, options);

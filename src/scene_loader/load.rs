@@ -205,10 +205,7 @@ mod tests {
         let whole: Vec<InputFile> = (to_files(&scene).iter())
             .map(|(path, bytes)| InputFile::new(path, bytes.clone()))
             .collect();
-        let half = |file: &InputFile| {
-            let bytes = file.bytes[..file.bytes.len() / 2].to_vec();
-            InputFile::photograph(&file.path, bytes, file.length()).unwrap_or(file.clone())
-        };
+        let half = |file: &InputFile| file.half().unwrap_or(file.clone());
         let files: Vec<InputFile> = whole.iter().map(half).collect();
         let images = files.iter().filter(|file| file.lacking().is_some());
         assert_eq!(images.count(), 6);

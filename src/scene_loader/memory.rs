@@ -23,16 +23,16 @@ const MEMORY_BYTES: u64 = if cfg!(target_arch = "wasm32") {
 
 /// Peak memory of a run with these views, bytes: photographs are whole where they are views.
 pub(crate) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
-    let heads: u64 = files.iter().map(|f| f.first_bytes().len() as u64).sum();
+    let heads: u64 = files.iter().map(InputFile::head_length).sum();
     let mut filled: Vec<usize> = views.iter().map(|v| v.file).collect();
     filled.sort_unstable();
     filled.dedup();
     let filled = filled.iter().map(|&i| &files[i]);
-    let filled = filled.map(|f| f.length().saturating_sub(f.first_bytes().len() as u64));
+    let filled = filled.map(|f| f.length().saturating_sub(f.head_length()));
     let read = heads + filled.sum::<u64>();
     let kept: u64 = views.iter().map(|v| v.pixels() * BYTES_PER_PIXEL).sum();
     let decoding = views.iter().map(|v| {
-        let chunk = decoding_bytes(&files[v.file].bytes, v.size);
+        let chunk = decoding_bytes(files[v.file].content(), v.size);
         // Without its lens, turned, or before it is reduced, a view is a second image of its size.
         let is_copied = v.distortion.is_some() || v.turn.is_some() || v.reduction > 1;
         let unreduced = v.pixels() * u64::from(v.reduction).pow(2);

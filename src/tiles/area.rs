@@ -1,6 +1,6 @@
 //! A large area, worked off tile by tile: the command line and the page both go this way.
 //!
-//! Only one cell is in memory at a time, beside what earlier ones found and the first bytes of all
+//! Only one cell is in memory at a time, beside what earlier ones found and the heads of all
 //! photographs: its views are read anew from the files.
 
 use std::sync::Arc;
@@ -135,7 +135,7 @@ impl Area {
 }
 
 /// CRC-32 of the version, the options, the parameters, the tiles and the files; of photographs the
-/// first bytes may stand for all.
+/// head may stand for all.
 fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params, tiles: &[Tile]) -> u32 {
     #[derive(Serialize)]
     struct Made<'a> {
@@ -151,7 +151,7 @@ fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params, tiles: &[
         params,
         tiles,
         files: (files.iter())
-            .map(|file| (&*file.path, crc32fast::hash(file.first_bytes())))
+            .map(|file| (&*file.path, crc32fast::hash(&file.head())))
             .collect(),
     };
     crc32fast::hash(&serde_json::to_vec(&made).expect("all keys are strings"))

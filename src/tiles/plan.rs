@@ -2,7 +2,7 @@
 //! one part each, and one joins them.
 //!
 //! The plan names every input file with its length and sum, of large photographs that of their
-//! first bytes, too. Each step compares all that it reads with these, so that a part made from
+//! head, too. Each step compares all that it reads with these, so that a part made from
 //! anything else is refused by the file's name; a part names the plan by the sum of the plan's
 //! file.
 //!
@@ -54,12 +54,12 @@ pub struct InputStamp {
     /// CRC-32 of its bytes. It tells accidents, not forgers; every change within 32 neighbouring
     /// bits is found, of others all but one in four thousand million.
     pub crc32: u32,
-    /// Of a photograph the first bytes, where steps that need no pixel of it read no more.
+    /// Of a photograph the head, where steps that need no pixel of it read no more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadStamp>,
 }
 
-/// The first bytes of a photograph as they were when the plan was made.
+/// The head of a photograph as it was when the plan was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HeadStamp {
@@ -75,7 +75,7 @@ impl InputStamp {
         Self::new(file, file.bytes.len() as u64, crc32fast::hash(&file.bytes))
     }
 
-    /// The stamp of a photograph of which the first bytes are in memory; `whole` reads all of them.
+    /// The stamp of a photograph of which the head is in memory; `whole` reads all of them.
     pub fn of_stream(file: &InputFile, mut whole: impl Read) -> io::Result<Self> {
         let (mut sum, mut length) = (crc32fast::Hasher::new(), 0);
         let mut chunk = vec![0; 1 << 18];
@@ -94,8 +94,8 @@ impl InputStamp {
 
     fn new(file: &InputFile, bytes: u64, crc32: u32) -> Self {
         let head = HeadStamp {
-            bytes: file.first_bytes().len() as u64,
-            crc32: crc32fast::hash(file.first_bytes()),
+            bytes: file.head_length(),
+            crc32: crc32fast::hash(&file.head()),
         };
         Self {
             file: file.path.clone(),
@@ -295,7 +295,7 @@ impl BlockPlan {
 
     /// Works off a tile: its part as a file, and the outcome in words. `text` is the plan's file;
     /// the files are those of [`Self::unchanged`], and photographs that have changed beyond their
-    /// first bytes are refused when they become whole.
+    /// heads are refused when they become whole.
     pub fn work_off(
         &self,
         text: &[u8],

@@ -2,19 +2,37 @@
 
 use wasm_bindgen::prelude::*;
 
-use super::convert::named_error;
+use super::convert::{named_error, to_js};
 use super::session::{Session, load_options};
-use crate::orientation::InputFile;
+use crate::orientation::{InputFile, PhotographHead};
+use crate::raster::HeaderNeeds;
 use crate::scene_loader::{files_of_ground, files_of_views};
 
 #[wasm_bindgen]
 impl Session {
-    /// Adds a photograph by its first bytes, `whole` being its length; false where they do not
-    /// suffice to plan with.
-    #[wasm_bindgen(js_name = addHead)]
-    pub fn add_head(&mut self, path: &str, bytes: Vec<u8>, whole: f64) -> bool {
-        let file = InputFile::photograph(path, bytes, whole as u64);
-        file.map(|file| self.put(file)).is_ok()
+    /// Adds a photograph by its head, of a file of `whole` bytes, range by range: begins it without
+    /// `bytes`, and goes on with those of the range that was answered. Answers the next range, true
+    /// when the photograph is added, and false where the file is to be added whole.
+    #[wasm_bindgen(js_name = addHead, unchecked_return_type = "[from: number, to: number] | boolean")]
+    pub fn add_head(
+        &mut self,
+        path: &str,
+        whole: f64,
+        bytes: Option<Vec<u8>>,
+    ) -> Result<JsValue, JsValue> {
+        let begun = self.head.take().filter(|_| bytes.is_some());
+        let mut head = begun.unwrap_or_else(|| PhotographHead::new(path, whole as u64));
+        if let (HeaderNeeds::Range(range), Some(bytes)) = (head.needs(), bytes)
+            && !head.add(range, &bytes)
+        {
+            return Ok(false.into());
+        }
+        if let HeaderNeeds::Range(range) = head.needs() {
+            self.head = Some(head);
+            return to_js(&[range.start as f64, range.end as f64]);
+        }
+        let file = InputFile::photograph(head).map(|file| self.put(file));
+        Ok(file.is_some().into())
     }
 
     /// Gives a photograph its whole bytes.
@@ -23,11 +41,14 @@ impl Session {
         let mut added = self.files.iter_mut().filter(|file| file.path == path);
         match added.next().is_some_and(|file| file.fill(bytes)) {
             true => Ok(()),
-            false => Err(named_error("RangeError", &format!("{path} is not lacking"))),
+            false => Err(named_error(
+                "RangeError",
+                &format!("{path}: the file is whole, or has changed since its head was read"),
+            )),
         }
     }
 
-    /// Leaves the first bytes of all photographs that were filled.
+    /// Leaves the heads of all photographs that were filled.
     #[wasm_bindgen(js_name = emptyFiles)]
     pub fn empty_files(&mut self) {
         self.files.iter_mut().for_each(InputFile::empty);

@@ -99,7 +99,7 @@ pub struct Flight<'a> {
 }
 
 impl<'a> Flight<'a> {
-    /// Of the files their first bytes suffice. `ground` has the heights of the ground where they
+    /// Of the files their heads suffice. `ground` has the heights of the ground where they
     /// were measured, metres, world frame of the input.
     pub fn new(
         files: &'a [InputFile],

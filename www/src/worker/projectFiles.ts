@@ -1,9 +1,6 @@
-/** The project's files in the worker: of large photographs the first bytes, until a call needs their pixels. */
+/** The project's files in the worker: of large photographs the head, until a call needs their pixels. */
 import type { InputFile } from "../shared/calls";
 import type { CoreSession } from "./coreSession";
-
-/** The headers of most photographs fit into the first of these; what has its own behind all of them is read whole. */
-const HEAD_BYTES = [64 * 1024, 512 * 1024, 2 * 1024 * 1024];
 
 export class ProjectFiles {
   readonly #session: CoreSession;
@@ -41,26 +38,15 @@ export class ProjectFiles {
     }
   }
 
+  /** Adds a photograph by the ranges of it that the core asks for; false where it wants the whole file. */
   async #addHead(path: string, blob: Blob): Promise<boolean> {
-    for (const size of HEAD_BYTES) {
-      if (blob.size <= size) {
-        return false;
-      }
-      const head = new Uint8Array(await readBlob(path, blob.slice(0, size)));
-      if (!isPhotograph(head)) {
-        return false;
-      }
-      if (this.#session.addHead(path, head, blob.size)) {
-        return true;
-      }
+    let next = this.#session.addHead(path, blob.size);
+    while (typeof next !== "boolean") {
+      const range = new Uint8Array(await readBlob(path, blob.slice(...next)));
+      next = this.#session.addHead(path, blob.size, range);
     }
-    return false;
+    return next;
   }
-}
-
-/** A JPEG or a PNG, by its first bytes: others say what they are anywhere. */
-function isPhotograph([first, second]: Uint8Array): boolean {
-  return (first === 0xff && second === 0xd8) || (first === 0x89 && second === 0x50);
 }
 
 /** A file may have vanished since it was dropped: the browser's own message does not name it. */

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::super::excerpt::Excerpt;
 use super::super::jpeg::JpegPart;
 use super::super::samples::{Samples, Values};
 use super::compression::{Compression, decompress, decompress_jpeg};
@@ -12,7 +13,7 @@ use crate::raster::photograph::PixelWindow;
 /// A TIFF whose tags have been read.
 pub(crate) struct Tiff<'a> {
     file: &'a str,
-    bytes: &'a [u8],
+    bytes: Excerpt<'a>,
     layout: Layout,
 }
 
@@ -24,7 +25,7 @@ pub(super) struct Chunk<'a> {
 
 impl<'a> Tiff<'a> {
     /// Reads the tags. `file` is for messages.
-    pub(crate) fn open(file: &'a str, bytes: &'a [u8]) -> Result<Self> {
+    pub(crate) fn open(file: &'a str, bytes: Excerpt<'a>) -> Result<Self> {
         let layout = Layout::read(file, bytes)?;
         Ok(Self {
             file,
@@ -34,7 +35,7 @@ impl<'a> Tiff<'a> {
     }
 
     /// What the tags say is known already.
-    pub(super) fn of_layout(file: &'a str, bytes: &'a [u8], layout: Layout) -> Self {
+    pub(super) fn of_layout(file: &'a str, bytes: Excerpt<'a>, layout: Layout) -> Self {
         Self {
             file,
             bytes,
@@ -198,12 +199,8 @@ impl<'a> Tiff<'a> {
                 advice: "copy or convert it again".to_owned(),
             }
         };
-        let place = |at: u64| {
-            usize::try_from(at)
-                .unwrap_or(usize::MAX)
-                .min(self.bytes.len())
-        };
-        let data = &self.bytes[place(offset)..place(offset.saturating_add(count))];
+        let data = self.bytes.get(self.bytes.within(offset, count));
+        let data = data.ok_or_else(|| damaged("it was not read".to_owned()))?;
         let pixels = (layout.chunk.0 as usize, rows as usize);
         let samples = layout.samples_of_a_chunk();
         if layout.compression == Compression::Jpeg {
