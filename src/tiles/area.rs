@@ -5,11 +5,13 @@
 
 use std::sync::Arc;
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::division::Division;
 use super::join::{CellPart, Joined, join};
+use super::model_parts::{subset, walls_of};
 use super::tile::{Cell, Tile};
 use crate::error::{Error, Result};
 use crate::execution::Listener;
@@ -23,6 +25,7 @@ use crate::scene_loader::{
     LoadOptions, PlannedScene, ShownArea, files_of_settling, settled, whole_views,
 };
 use crate::texture::texture_model;
+use crate::walls::place_walls_of;
 
 /// An area, its tiles, and what those that are done have found.
 #[derive(Clone, Debug)]
@@ -125,12 +128,14 @@ impl Area {
 
     /// One model of all tiles, as files; the first error where no tile could be read. `seconds`
     /// of each tile go into `report.json` and may be empty.
-    pub fn finish(self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
+    pub fn finish(self, seconds: &[f64], form: ModelForm) -> Result<Vec<(String, Vec<u8>)>> {
         if let (true, Some(error)) = (self.parts.is_empty(), self.first_error) {
             return Err(error);
         }
-        let joined = join_cells(self.whole, self.parts);
-        Ok(model_files(&joined, &self.params, &self.reports, seconds))
+        let (joined, squares) = join_cells(self.whole, self.parts, form, &self.params);
+        let mut files = model_files(&joined, &self.params, &self.reports, seconds);
+        take_in(&mut files, squares);
+        Ok(files)
     }
 }
 
@@ -247,14 +252,43 @@ pub(super) fn work_off(
     })
 }
 
-/// Joins the parts of all cells in the order of the grid, whatever the tiles were.
-pub(super) fn join_cells(whole: Scene, mut parts: Vec<CellPart>) -> Joined {
+/// As what the model of an area is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelForm {
+    /// As one, like that of a scene.
+    Whole,
+    /// Its 3D Tiles are a file for each square, so that a viewer fetches what it shows; where there
+    /// is one square with buildings only, as one.
+    Squares,
+}
+
+/// Joins the parts of all cells in the order of the grid, whatever the tiles were; with the files
+/// of the squares where they are asked for.
+pub(super) fn join_cells(
+    whole: Scene,
+    mut parts: Vec<CellPart>,
+    form: ModelForm,
+    params: &Params,
+) -> (Joined, Vec<(String, Vec<u8>)>) {
     let place = |part: &CellPart| part.cell.core;
     parts.sort_by(|a, b| {
         let ([ax, ay, ..], [bx, by, ..]) = (place(a), place(b));
         ay.total_cmp(&by).then(ax.total_cmp(&bx))
     });
-    join(whole, &parts)
+    let joined = join(whole, &parts);
+    let squares = match form {
+        ModelForm::Squares if joined.squares_with_buildings() > 1 => {
+            joined.squares(&parts, params.texture.jpeg_quality)
+        }
+        _ => Vec::new(),
+    };
+    (joined, squares)
+}
+
+/// Adds files; those of the same name take the place of what is there.
+pub(super) fn take_in(files: &mut Vec<(String, Vec<u8>)>, added: Vec<(String, Vec<u8>)>) {
+    files.retain(|(name, _)| added.iter().all(|(other, _)| other != name));
+    files.extend(added);
 }
 
 /// The files of the model of all tiles, with a report.
@@ -302,7 +336,13 @@ fn part(
     }
     let (scene, results) = (run.scene(), run.results());
     let all = results.roof_model().expect("the stages have run");
-    let model = cell.keep(all, &scene.origin);
+    let kept = cell.keep(all, &scene.origin);
+    let model = subset(all, &kept);
+    let ground = results.half_planes.as_ref().map(|found| &found.ground);
+    let walls = (place_walls_of(scene, all, &kept, ground).into_iter())
+        .zip(kept.iter().zip(&model.buildings))
+        .map(|(walls, (&b, own))| walls_of(&walls, &all.buildings[b], own, &Vector3::zeros()))
+        .collect();
     let (textured, _) = texture_model(scene, &model, &params.texture);
     let found = "the stages have run";
     let (segments, lines, half_planes) = match params.method {
@@ -327,6 +367,7 @@ fn part(
         half_planes,
         candidates: results.candidates(),
         model,
+        walls,
         textured,
     }
 }

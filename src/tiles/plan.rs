@@ -14,7 +14,9 @@ use std::io::{self, Read};
 
 use serde::{Deserialize, Serialize};
 
-use super::area::{divided, join_cells, model_files, refuse_corrections, work_off};
+use super::area::{
+    ModelForm, divided, join_cells, model_files, refuse_corrections, take_in, work_off,
+};
 use super::division::Division;
 use super::join::Joined;
 use super::part_file::{PartKey, TileOutcome};
@@ -355,15 +357,17 @@ impl BlockPlan {
                     .to_owned(),
             });
         }
-        let joined = join_cells(whole, parts);
+        let (joined, squares) = join_cells(whole, parts, ModelForm::Squares, &self.params);
         let mut files = model_files(&joined, &self.params, &reports, &[]);
+        take_in(&mut files, squares);
         let Joined {
             scene,
             model,
+            walls,
             textured,
             ..
         } = &joined;
-        let features = city_json_seq(scene, model, textured);
+        let features = city_json_seq(scene, (model, walls), textured);
         files.push(("model.city.jsonl".to_owned(), features));
         Ok(files)
     }

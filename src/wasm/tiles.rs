@@ -12,7 +12,7 @@ use crate::orientation::InputFile;
 use crate::scene_loader::{
     LoadOptions, files_of_ground, files_of_views, ground_files, ground_heights,
 };
-use crate::tiles::{Area, FlightPlan, TileReport};
+use crate::tiles::{Area, FlightPlan, ModelForm, TileReport};
 
 /// What a tile came to, and its model (glTF) where it has one.
 #[wasm_bindgen]
@@ -141,7 +141,10 @@ impl Session {
     #[wasm_bindgen(js_name = joinTiles)]
     pub fn join_tiles(&mut self) -> Result<(), JsValue> {
         let area = self.area.take().ok_or_else(not_planned)?;
-        self.outputs = Some(area.finish(&[]).map_err(|e| input_error(&e))?);
+        self.outputs = Some(
+            area.finish(&[], ModelForm::Whole)
+                .map_err(|e| input_error(&e))?,
+        );
         Ok(())
     }
 
