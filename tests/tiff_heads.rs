@@ -7,8 +7,10 @@
 mod planted;
 
 use planted::{Form, Place, forms, offset_of, written};
-use ridgeline::orientation::{InputFile, PhotographHead, detect};
+use ridgeline::orientation::{FileSource, InputFile, Needed, PhotographHead, detect};
 use ridgeline::raster::{HeaderNeeds, image_header, load_image};
+use ridgeline::scene_loader::{LoadOptions, PlannedScene, load_scene};
+use ridgeline::synthetic::{gable_scene, to_files};
 
 const SIZE: [u32; 2] = [700, 500];
 
@@ -23,9 +25,18 @@ fn image() -> image::RgbImage {
     })
 }
 
+/// The head of a file in memory.
+fn head_of_file(file: &InputFile) -> Option<InputFile> {
+    read_head(&file.path, &file.bytes).0
+}
+
 /// The head of a file as it is read, and how much of the file that took.
 fn head_of(bytes: &[u8]) -> (Option<InputFile>, u64) {
-    let mut head = PhotographHead::new("a.tif", bytes.len() as u64);
+    read_head("a.tif", bytes)
+}
+
+fn read_head(path: &str, bytes: &[u8]) -> (Option<InputFile>, u64) {
+    let mut head = PhotographHead::new(path, bytes.len() as u64);
     let mut read = 0;
     while let HeaderNeeds::Range(range) = head.needs() {
         read += range.end - range.start;
@@ -114,4 +125,82 @@ fn damaged_files_have_the_same_message_as_before() {
             }
         }
     }
+}
+
+/// Files of which photographs are read as far as they are needed.
+struct Sparing {
+    whole: Vec<InputFile>,
+    files: Vec<InputFile>,
+    /// Bytes that were in memory at once, at most.
+    most: usize,
+}
+
+impl FileSource for Sparing {
+    fn files(&self) -> &[InputFile] {
+        &self.files
+    }
+
+    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<Needed>) -> ridgeline::Result<()> {
+        let needed = needed(&self.files);
+        self.files.iter_mut().for_each(InputFile::empty);
+        for Needed { file, ranges } in &needed {
+            let (whole, file) = (&self.whole[*file].bytes, &mut self.files[*file]);
+            match ranges {
+                None => assert!(file.fill(whole.clone())),
+                Some(ranges) => {
+                    let parts = ranges
+                        .iter()
+                        .map(|r| &whole[r.start as usize..r.end as usize]);
+                    assert!(file.fill_ranges(ranges, &parts.collect::<Vec<_>>().concat()));
+                }
+            }
+        }
+        assert!(needed.iter().all(|one| one.is_in(&self.files)));
+        let held = self.files.iter().map(|file| file.bytes.len()).sum();
+        self.most = self.most.max(held);
+        Ok(())
+    }
+}
+
+#[test]
+fn a_region_is_decoded_from_the_strips_and_tiles_that_show_it() {
+    let (scene, truth) = gable_scene(1000);
+    let mut forms = forms().into_iter().rev().cycle();
+    let whole: Vec<InputFile> = (to_files(&scene).into_iter())
+        .map(|(path, bytes)| match image::load_from_memory(&bytes) {
+            Ok(image) => {
+                let bytes = written(&image.into_rgb8(), forms.next().unwrap());
+                InputFile::new(&path.replace(".png", ".tif"), bytes)
+            }
+            Err(_) => {
+                let text = String::from_utf8(bytes).unwrap();
+                InputFile::new(&path, text.replace(".png", ".tif").into_bytes())
+            }
+        })
+        .collect();
+    let head = |file: &InputFile| head_of_file(file).unwrap_or(file.clone());
+    let [x, y, z] = scene.origin.into();
+    let options = LoadOptions {
+        orientation: Some("colmap".to_owned()),
+        roi: Some([x - 1.0, y - 1.0, x + 1.0, y + 1.0]),
+        ground_z: Some(z + truth.ground_z),
+        ignore_check: true,
+        ..LoadOptions::default()
+    };
+    let mut sparing = Sparing {
+        files: whole.iter().map(head).collect(),
+        whole: whole.clone(),
+        most: 0,
+    };
+    let loaded = PlannedScene::new(&mut sparing, &options).unwrap();
+    let loaded = loaded.load(sparing.files()).unwrap();
+    let expected = load_scene(&whole, &options).unwrap();
+    assert_eq!(loaded.warnings, expected.warnings);
+    assert!(loaded.views.len() >= 3);
+    for (a, b) in loaded.views.iter().zip(&expected.views) {
+        assert_eq!((&a.name, &a.camera), (&b.name, &b.camera));
+        assert!(a.rgb == b.rgb && a.gray == b.gray, "{}", a.name);
+    }
+    let all: usize = whole.iter().map(|file| file.bytes.len()).sum();
+    assert!(sparing.most < all / 2, "{} of {all}", sparing.most);
 }

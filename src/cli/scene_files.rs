@@ -1,12 +1,13 @@
 //! The files of a scene: of large photographs the head is in memory, until a step needs their
 //! pixels.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use ridgeline::orientation::{FileSource, InputFile, PhotographHead};
+use ridgeline::orientation::{FileSource, InputFile, Needed, PhotographHead};
 use ridgeline::raster::HeaderNeeds;
 use ridgeline::tiles::InputStamp;
 
@@ -61,23 +62,44 @@ impl FileSource for SceneFiles {
         &self.files
     }
 
-    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<usize>) -> ridgeline::Result<()> {
-        let needed: BTreeSet<usize> = needed(&self.files).into_iter().collect();
-        let others = self.files.iter_mut().enumerate();
-        let others = others.filter(|(i, _)| !needed.contains(i));
-        others.for_each(|(_, file)| file.empty());
-        for i in needed {
-            let file = &mut self.files[i];
+    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<Needed>) -> ridgeline::Result<()> {
+        let needed = needed(&self.files);
+        let (held, lacking): (Vec<_>, Vec<_>) =
+            needed.iter().partition(|one| one.is_in(&self.files));
+        for (i, file) in self.files.iter_mut().enumerate() {
+            if held.iter().all(|one| one.file != i) {
+                file.empty();
+            }
+        }
+        for one in lacking {
+            let file = &mut self.files[one.file];
             let Some(source) = file.lacking() else {
                 continue;
             };
-            let bytes = fs::read(&self.sources[source]).map_err(|e| gone(file, &e.to_string()))?;
-            if !file.fill(bytes) {
-                return Err(gone(file, "it has changed since its head was read"));
+            let path = &self.sources[source];
+            let filled = match &one.ranges {
+                None => fs::read(path).map(|bytes| file.fill(bytes)),
+                Some(ranges) => read_ranges(path, ranges).map(|b| file.fill_ranges(ranges, &b)),
+            };
+            match filled {
+                Ok(true) => {}
+                Ok(false) => return Err(gone(file, "it has changed since its head was read")),
+                Err(e) => return Err(gone(file, &e.to_string())),
             }
         }
         Ok(())
     }
+}
+
+/// Some ranges of a file, one after the other.
+fn read_ranges(path: &Path, ranges: &[Range<u64>]) -> io::Result<Vec<u8>> {
+    let mut file = File::open(path)?;
+    let mut bytes = Vec::new();
+    for range in ranges {
+        file.seek(SeekFrom::Start(range.start))?;
+        (file.by_ref().take(range.end - range.start)).read_to_end(&mut bytes)?;
+    }
+    Ok(bytes)
 }
 
 /// The refusal of a photograph that was there when the scene was read.

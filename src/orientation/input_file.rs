@@ -1,9 +1,9 @@
 //! Files as the caller hands them over.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use super::photograph_head::{PhotographHead, gathered};
-use crate::error;
 #[cfg(test)]
 use crate::raster::image_format;
 use crate::raster::{Excerpt, HeaderNeeds, Piece};
@@ -27,12 +27,26 @@ pub struct InputFile {
 struct Head {
     /// The path under which it was read.
     source: String,
-    /// Where the bytes of the head stand in the file.
+    /// Where the bytes of the head stand in the file, then those of the ranges that are filled.
     pieces: Vec<Piece>,
+    /// How many of them are the head's.
+    of_head: usize,
     /// Bytes of the whole file.
     whole: u64,
     /// Are all of them here?
-    is_filled: bool,
+    is_whole: bool,
+}
+
+impl Head {
+    fn of_head(&self) -> &[Piece] {
+        &self.pieces[..self.of_head]
+    }
+
+    /// Bytes of the head.
+    fn bytes(&self) -> usize {
+        let length: u64 = self.of_head().iter().map(Piece::length).sum();
+        length as usize
+    }
 }
 
 impl InputFile {
@@ -61,9 +75,10 @@ impl InputFile {
         let mut file = Self::new(&path, bytes);
         file.head = Some(Head {
             source: file.path.clone(),
+            of_head: pieces.len(),
             pieces,
             whole,
-            is_filled: false,
+            is_whole: false,
         });
         file
     }
@@ -91,37 +106,97 @@ impl InputFile {
         let Some(head) = &mut self.head else {
             return false;
         };
+        let of_head = self.bytes.get(..head.bytes()).unwrap_or_default();
         let is_same = bytes.len() as u64 == head.whole
-            && (head.is_filled || self.bytes == gathered(&head.pieces, &bytes));
+            && (head.is_whole || *of_head == gathered(head.of_head(), &bytes));
         if is_same {
-            head.is_filled = true;
+            head.pieces.truncate(head.of_head);
+            head.is_whole = true;
             self.bytes = bytes;
         }
         is_same
     }
 
-    /// Leaves the head of a photograph that was filled.
-    pub fn empty(&mut self) {
-        if let Some(head) = self.head.as_mut().filter(|head| head.is_filled) {
-            head.is_filled = false;
-            self.bytes = gathered(&head.pieces, &self.bytes);
+    /// Gives a photograph some ranges beside its head, instead of what it was filled with; `bytes`
+    /// are those of all, one after the other. False where it is not held by its head, or the bytes
+    /// are fewer.
+    pub fn fill_ranges(&mut self, ranges: &[Range<u64>], bytes: &[u8]) -> bool {
+        self.empty();
+        let length: u64 = ranges.iter().map(|range| range.end - range.start).sum();
+        let Some(head) = self.head.as_mut().filter(|_| bytes.len() as u64 == length) else {
+            return false;
+        };
+        let mut at = self.bytes.len();
+        for place in ranges {
+            let piece = Piece {
+                place: place.clone(),
+                at,
+            };
+            at += piece.length() as usize;
+            head.pieces.push(piece);
+        }
+        self.bytes.extend_from_slice(bytes);
+        true
+    }
+
+    /// Are these ranges of it in memory, or all of it where none are given?
+    pub(super) fn has(&self, ranges: Option<&[Range<u64>]>) -> bool {
+        match (&self.head, ranges) {
+            (None, _) => true,
+            (Some(head), None) => head.is_whole,
+            (Some(head), Some(ranges)) => {
+                let places = head.pieces[head.of_head..].iter().map(|piece| &piece.place);
+                head.is_whole || places.eq(ranges)
+            }
         }
     }
 
-    /// The path under which a photograph was read of which only the head is here.
+    /// Is it whole from the beginning, and stays so?
+    pub(super) fn is_always_whole(&self) -> bool {
+        self.head.is_none()
+    }
+
+    /// The ranges that are filled beside its head, with their bytes; none where it is whole.
+    pub(crate) fn filled_ranges(&self) -> impl Iterator<Item = (Range<u64>, &[u8])> {
+        let pieces = self
+            .head
+            .iter()
+            .flat_map(|head| &head.pieces[head.of_head..]);
+        pieces.map(|piece| {
+            let end = piece.at + piece.length() as usize;
+            (piece.place.clone(), &self.bytes[piece.at..end])
+        })
+    }
+
+    /// Leaves the head of a photograph that was filled.
+    pub fn empty(&mut self) {
+        let Some(head) = &mut self.head else {
+            return;
+        };
+        head.pieces.truncate(head.of_head);
+        if std::mem::take(&mut head.is_whole) {
+            self.bytes = gathered(&head.pieces, &self.bytes);
+        } else {
+            self.bytes.truncate(head.bytes());
+            self.bytes.shrink_to_fit();
+        }
+    }
+
+    /// The path under which a photograph was read that is not whole.
     pub fn lacking(&self) -> Option<&str> {
-        let head = self.head.as_ref().filter(|head| !head.is_filled)?;
+        let head = self.head.as_ref().filter(|head| !head.is_whole)?;
         Some(&head.source)
     }
 
-    /// Was it filled?
+    /// Was it filled, as a whole or with ranges?
     pub fn is_filled(&self) -> bool {
-        self.head.as_ref().is_some_and(|head| head.is_filled)
+        let is_filled = |head: &Head| head.is_whole || head.pieces.len() > head.of_head;
+        self.head.as_ref().is_some_and(is_filled)
     }
 
     /// What of it is in memory, for readers of images.
     pub fn content(&self) -> Excerpt<'_> {
-        match self.head.as_ref().filter(|head| !head.is_filled) {
+        match self.head.as_ref().filter(|head| !head.is_whole) {
             Some(head) => Excerpt::new(&self.bytes, &head.pieces, head.whole),
             None => (&self.bytes).into(),
         }
@@ -129,8 +204,9 @@ impl InputFile {
 
     /// What of it always is in memory: the head of a photograph, all of another file.
     pub fn head(&self) -> Cow<'_, [u8]> {
-        match self.head.as_ref().filter(|head| head.is_filled) {
-            Some(head) => Cow::Owned(gathered(&head.pieces, &self.bytes)),
+        match &self.head {
+            Some(head) if head.is_whole => Cow::Owned(gathered(&head.pieces, &self.bytes)),
+            Some(head) => Cow::Borrowed(&self.bytes[..head.bytes()]),
             None => Cow::Borrowed(&self.bytes),
         }
     }
@@ -138,8 +214,8 @@ impl InputFile {
     /// Bytes of [`Self::head`].
     pub fn head_length(&self) -> u64 {
         let all = self.bytes.len() as u64;
-        let of_pieces = |head: &Head| head.pieces.iter().map(Piece::length).sum();
-        self.head.as_ref().map_or(all, of_pieces)
+        let of_head = |head: &Head| head.bytes() as u64;
+        self.head.as_ref().map_or(all, of_head)
     }
 
     /// Bytes of the whole file.
@@ -168,27 +244,6 @@ impl InputFile {
         let head = &self.bytes[..self.bytes.len().min(bytes)];
         let is_text = utf16(head).is_some() || !head.contains(&0);
         is_text.then(|| decoded(head))
-    }
-}
-
-/// The files of a scene, and who gives photographs their whole bytes when their pixels are needed.
-pub trait FileSource {
-    /// All files.
-    fn files(&self) -> &[InputFile];
-
-    /// Makes these files whole, by their indices, and lets go of all others; refused by name where
-    /// one cannot be had any more.
-    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<usize>) -> error::Result<()>;
-}
-
-/// Files that are whole, or were made whole before.
-impl FileSource for &[InputFile] {
-    fn files(&self) -> &[InputFile] {
-        self
-    }
-
-    fn hold(&mut self, _: &dyn Fn(&[InputFile]) -> Vec<usize>) -> error::Result<()> {
-        Ok(())
     }
 }
 

@@ -444,6 +444,12 @@ mod tests {
                 .collect()
         };
         let faces = model.buildings.iter().map(uv).collect();
+        // Walls below the rim: a solid like that of the building.
+        let walls = |b: &Building| BuildingWalls {
+            solid: Some(b.solid.clone()),
+            ..BuildingWalls::default()
+        };
+        let walls = model.buildings.iter().map(walls).collect();
         let textured = TexturedModel {
             atlas: image::RgbImage::new(8, 4),
             faces,
@@ -457,7 +463,7 @@ mod tests {
             half_planes: Vec::new(),
             candidates: Candidates::default(),
             model,
-            walls: Vec::new(),
+            walls,
             textured,
         }
     }
@@ -482,8 +488,12 @@ mod tests {
             warnings: Vec::new(),
             survey: Survey::default(),
         };
-        let joined = join(scene, &[west, east]);
+        let parts = [west, east];
+        let joined = join(scene, &parts);
         assert_eq!(joined.model.buildings.len(), 3);
+        for (building, walls) in joined.model.buildings.iter().zip(&joined.walls) {
+            assert_eq!(walls.solid.as_ref(), Some(&building.solid));
+        }
         assert_eq!(check_invariants(&joined.model), []);
         let mut middles: Vec<i64> = joined
             .model
@@ -526,5 +536,22 @@ mod tests {
             .map(|faces| faces[0].uv[0][0][1])
             .collect();
         assert_eq!(v, [0.25, 0.75, 0.75]);
+        // Each square is a file whose buildings have the numbers of the whole.
+        let files = joined.squares(&parts, 80);
+        let names: Vec<&str> = files.iter().map(|(name, _)| &**name).collect();
+        assert_eq!(names, ["square_0_0.glb", "square_1_0.glb", "tileset.json"]);
+        let numbers = |bytes: &[u8]| {
+            let text = String::from_utf8_lossy(bytes);
+            let named = |i: &usize| text.contains(&format!("\"building\":{i}"));
+            (0..3).filter(named).collect::<Vec<usize>>()
+        };
+        assert_eq!(numbers(&files[0].1), [0]);
+        assert_eq!(numbers(&files[1].1), [1, 2]);
+        let tileset: serde_json::Value = serde_json::from_slice(&files[2].1).unwrap();
+        let children = tileset["root"]["children"].as_array().unwrap();
+        let uris: Vec<&str> = (children.iter())
+            .map(|child| child["content"]["uri"].as_str().unwrap())
+            .collect();
+        assert_eq!(uris, names[..2]);
     }
 }

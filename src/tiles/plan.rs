@@ -12,6 +12,7 @@
 use std::collections::BTreeMap;
 use std::io::{self, Read};
 
+use image::ImageFormat;
 use serde::{Deserialize, Serialize};
 
 use super::area::{
@@ -24,8 +25,9 @@ use super::tile::{Cell, Tile};
 use crate::error::{Error, Result};
 use crate::execution::Listener;
 use crate::export::city_json_seq;
-use crate::orientation::{FileSource, InputFile};
+use crate::orientation::{BLOCK_BYTES, FileSource, InputFile, Needed};
 use crate::params::Params;
+use crate::raster::image_format;
 use crate::scene_loader::{LoadOptions, ViewWindow, files_of_ground, region_windows, whole_views};
 
 /// Cells that are planned at the same time. Assumption: enough for the cores of a machine, and few
@@ -59,6 +61,10 @@ pub struct InputStamp {
     /// Of a photograph the head, where steps that need no pixel of it read no more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadStamp>,
+    /// Of a photograph that is read in blocks: CRC-32 of each block of 256 kB, eight hexadecimal
+    /// digits each.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub blocks: String,
 }
 
 /// The head of a photograph as it was when the plan was made.
@@ -80,18 +86,24 @@ impl InputStamp {
     /// The stamp of a photograph of which the head is in memory; `whole` reads all of them.
     pub fn of_stream(file: &InputFile, mut whole: impl Read) -> io::Result<Self> {
         let (mut sum, mut length) = (crc32fast::Hasher::new(), 0);
-        let mut chunk = vec![0; 1 << 18];
+        let mut blocks = String::new();
+        let mut block = Vec::new();
         loop {
-            match whole.read(&mut chunk) {
-                Ok(0) => return Ok(Self::new(file, length, sum.finalize())),
-                Ok(read) => {
-                    sum.update(&chunk[..read]);
-                    length += read as u64;
-                }
-                Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
-                Err(e) => return Err(e),
+            block.clear();
+            whole.by_ref().take(BLOCK_BYTES).read_to_end(&mut block)?;
+            if block.is_empty() {
+                break;
+            }
+            sum.update(&block);
+            length += block.len() as u64;
+            if image_format(&file.bytes) == Some(ImageFormat::Tiff) {
+                blocks += &format!("{:08x}", crc32fast::hash(&block));
             }
         }
+        Ok(Self {
+            blocks,
+            ..Self::new(file, length, sum.finalize())
+        })
     }
 
     fn new(file: &InputFile, bytes: u64, crc32: u32) -> Self {
@@ -104,6 +116,7 @@ impl InputStamp {
             bytes,
             crc32,
             head: (head.bytes < bytes).then_some(head),
+            blocks: String::new(),
         }
     }
 
@@ -113,7 +126,22 @@ impl InputStamp {
             let bytes = &file.bytes;
             return (self.bytes, self.crc32) == (bytes.len() as u64, crc32fast::hash(bytes));
         }
-        Self::new(file, file.length(), self.crc32) == *self
+        let found = Self {
+            blocks: self.blocks.clone(),
+            ..Self::new(file, file.length(), self.crc32)
+        };
+        found == *self && (file.filled_ranges()).all(|(place, bytes)| self.has(place.start, bytes))
+    }
+
+    /// Are these blocks, from a place on, as they were?
+    fn has(&self, from: u64, blocks: &[u8]) -> bool {
+        let first = (from / BLOCK_BYTES) as usize;
+        let blocks = blocks.chunks(BLOCK_BYTES as usize).enumerate();
+        blocks.into_iter().all(|(i, block)| {
+            let at = 8 * (first + i);
+            let stated = self.blocks.get(at..at + 8);
+            stated == Some(&*format!("{:08x}", crc32fast::hash(block)))
+        })
     }
 
     fn refuse(&self, problem: &str) -> Error {
@@ -141,7 +169,7 @@ impl FileSource for Compared<'_> {
         self.source.files()
     }
 
-    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<usize>) -> Result<()> {
+    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<Needed>) -> Result<()> {
         self.source.hold(needed)?;
         let held = self.inputs.iter().zip(self.source.files());
         let mut filled = held.filter(|(_, file)| file.is_filled());
@@ -418,7 +446,7 @@ fn planned(
             let of_cell =
                 |_: usize, cell: &Cell| files_of_ground(files, &options_of(cell, options));
             let needed = crate::execution::map(some, of_cell);
-            needed.into_iter().flatten().collect()
+            Needed::merged(needed.into_iter().flatten(), files)
         })?;
         let files = source.files();
         let of_cell = |_: usize, cell: &Cell| planned_cell(files, options, cell);

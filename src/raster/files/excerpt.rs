@@ -82,6 +82,9 @@ impl<'a> Excerpt<'a> {
         if range.start > range.end || range.end > self.length {
             return None;
         }
+        if range.is_empty() {
+            return Some(&[]);
+        }
         let Some(pieces) = self.pieces else {
             return self.bytes.get(range.start as usize..range.end as usize);
         };

@@ -20,6 +20,7 @@ mod window;
 
 pub use excerpt::{Excerpt, Piece};
 pub use load::{ImageHeader, image_format, image_header, load_image};
+pub(crate) use needed::window_ranges;
 pub use needed::{HeaderNeeds, header_needs};
 pub use tiff::Bands;
 pub(crate) use tiff::{Directory, NumberRaster, is_height_raster, is_tiff, tags as tiff_tags};

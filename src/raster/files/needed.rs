@@ -6,8 +6,9 @@ use std::ops::Range;
 
 use super::excerpt::Excerpt;
 use super::load::{image_format, image_header};
-use super::tiff::{is_height_raster, is_placed_band, is_tiff};
+use super::tiff::{Tiff, is_height_raster, is_placed_band, is_tiff};
 use super::unread::unread_image_format;
+use crate::raster::photograph::PixelWindow;
 
 /// The headers of most JPEG and PNG files fit into the first of these, bytes; what has its own
 /// behind all of them is read whole. The directories of a TIFF are no more than the last, either.
@@ -60,6 +61,18 @@ pub fn header_needs(file: &str, excerpt: Excerpt) -> HeaderNeeds {
         Some(size) if size < excerpt.length() => HeaderNeeds::Range(here..size),
         _ => HeaderNeeds::Whole,
     }
+}
+
+/// The ranges of a file that decoding a window of it reads beyond the header, in any order; `None`
+/// where it reads all: of a JPEG, of a PNG, of a TIFF of 16 bits, which is scaled by its brightest
+/// value, and of one that does not state how long its strips or tiles are. `file` is for messages.
+pub(crate) fn window_ranges(
+    file: &str,
+    excerpt: Excerpt,
+    window: PixelWindow,
+) -> Option<Vec<Range<u64>>> {
+    let tiff = is_tiff(excerpt.start()).then(|| Tiff::open(file, excerpt));
+    tiff?.ok()?.ranges(window)
 }
 
 /// The first blocks that any reader of the tags asks for and that are not in memory.

@@ -1,5 +1,6 @@
 /** The project's files in the worker: of large photographs the head, until a call needs their pixels. */
 import type { InputFile } from "../shared/calls";
+import type { LackingFile } from "../shared/records";
 import type { CoreSession } from "./coreSession";
 
 export class ProjectFiles {
@@ -21,21 +22,33 @@ export class ProjectFiles {
     }
   }
 
-  /** Calls the core while it holds the photographs that `needed` names step by step, and takes them from it again. */
-  async withWhole<T>(needed: readonly (() => string[])[], call: () => T): Promise<T> {
+  /** Calls the core while it holds what `needed` names of photographs step by step, and takes it from it again. */
+  async withFilled<T>(needed: readonly (() => LackingFile[])[], call: () => T): Promise<T> {
     try {
       for (const step of needed) {
-        for (const path of step()) {
-          const blob = this.#blobs.get(path);
-          if (blob !== undefined) {
-            this.#session.fillFile(path, new Uint8Array(await readBlob(path, blob)));
-          }
+        for (const lacking of step()) {
+          await this.#fill(lacking);
         }
       }
       return call();
     } finally {
       this.#session.emptyFiles();
     }
+  }
+
+  async #fill({ path, places }: LackingFile): Promise<void> {
+    const blob = this.#blobs.get(path);
+    if (blob === undefined) {
+      return;
+    }
+    if (places === null) {
+      this.#session.fillFile(path, new Uint8Array(await readBlob(path, blob)));
+      return;
+    }
+    // A blob of slices is read at once.
+    const starts = places.filter((_, i) => i % 2 === 0);
+    const slices = new Blob(starts.map((start, i) => blob.slice(start, places[2 * i + 1])));
+    this.#session.fillRanges(path, new Float64Array(places), new Uint8Array(await readBlob(path, slices)));
   }
 
   /** Adds a photograph by the ranges of it that the core asks for; false where it wants the whole file. */

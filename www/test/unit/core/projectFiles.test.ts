@@ -15,6 +15,8 @@ function recorder(wanted: [number, number][], isPhotograph = true) {
       return ranges.shift() ?? (isPhotograph && whole > 100);
     },
     fillFile: (path: string, bytes: Uint8Array) => calls.push(["fill", path, bytes.length]),
+    fillRanges: (path: string, places: Float64Array, bytes: Uint8Array) =>
+      calls.push(["ranges", `${path} ${places.join(" ")}`, bytes.length]),
     emptyFiles: () => calls.push(["empty", "", 0]),
   };
   return { calls, files: new ProjectFiles(session as unknown as CoreSession) };
@@ -60,7 +62,7 @@ describe("the files of a project in the worker", () => {
     const { calls, files } = recorder([[0, 64 * KB]]);
     await files.replace([{ path: "a.jpg", blob: jpeg(100) }]);
     calls.length = 0;
-    const failing = files.withWhole([() => ["a.jpg"], () => []], () => {
+    const failing = files.withFilled([() => [{ path: "a.jpg", places: null }], () => []], () => {
       calls.push(["call", "", 0]);
       throw new Error("rejected");
     });
@@ -68,6 +70,18 @@ describe("the files of a project in the worker", () => {
     expect(calls).toEqual([
       ["fill", "a.jpg", 100 * KB],
       ["call", "", 0],
+      ["empty", "", 0],
+    ]);
+  });
+
+  it("are read in the ranges that are needed of them", async () => {
+    const { calls, files } = recorder([[0, 64 * KB]]);
+    await files.replace([{ path: "a.tif", blob: jpeg(100) }]);
+    calls.length = 0;
+    const places = [0, 10, 90 * KB, 100 * KB];
+    await files.withFilled([() => [{ path: "a.tif", places }]], () => undefined);
+    expect(calls).toEqual([
+      ["ranges", `a.tif ${places.join(" ")}`, 10 + 10 * KB],
       ["empty", "", 0],
     ]);
   });
