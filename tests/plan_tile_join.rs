@@ -4,6 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+#[path = "common/tiff.rs"]
+mod tiff;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -35,8 +37,12 @@ struct Block(tempfile::TempDir);
 impl Block {
     /// A plan without parts.
     fn planned() -> Self {
+        Self::planned_of(common::synthetic_files())
+    }
+
+    fn planned_of(files: Vec<(String, Vec<u8>)>) -> Self {
         let block = Self(tempfile::tempdir().unwrap());
-        for (path, bytes) in common::synthetic_files() {
+        for (path, bytes) in files {
             let path = block.scene().join(path);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(path, bytes).unwrap();
@@ -425,6 +431,97 @@ fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
         fs::write(images.join(name), bytes).unwrap();
     }
     let archive = common::zipped(&common::synthetic_files());
+    fs::write(block.0.path().join("scene.zip"), archive).unwrap();
+    let model_of = |scene: &str, out: &str| {
+        let mut command = block.command();
+        command.args(["reconstruct", scene, "--roi", "-31,-31,31,31", "--out", out]);
+        let output = command.args(["--max-views", "3"]).output().unwrap();
+        assert!(output.status.success(), "{}", words(&output));
+        let mut files = files_in(&block.0.path().join(out));
+        files.remove("report.json");
+        files
+    };
+    assert!(model_of("scene", "a") == model_of("scene.zip", "b"));
+}
+
+/// The scene with its photographs as TIFFs, whose directories stand in every place in turn.
+fn tiff_files() -> Vec<(String, Vec<u8>)> {
+    let mut forms = tiff::forms().into_iter().cycle();
+    let mut as_tiff = |(path, bytes): (String, Vec<u8>)| match image::load_from_memory(&bytes) {
+        Ok(image) => {
+            let form = forms.next().unwrap();
+            let bytes = tiff::written(&image.into_rgb8(), form);
+            (path.replace(".png", ".tif"), bytes)
+        }
+        Err(_) => {
+            let text = String::from_utf8(bytes).unwrap();
+            (path, text.replace(".png", ".tif").into_bytes())
+        }
+    };
+    common::synthetic_files()
+        .into_iter()
+        .map(&mut as_tiff)
+        .collect()
+}
+
+#[test]
+fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
+    let block = Block::planned_of(tiff_files());
+    let mut command = block.command();
+    command.args(["plan", "scene", "--tile", "60", "--max-views", "3"]);
+    let planned = command.args(AREA).args(["--out", "few"]).output().unwrap();
+    assert!(planned.status.success(), "{}", words(&planned));
+    let folder = block.0.path().join("few");
+    let plan: Value =
+        serde_json::from_slice(&fs::read(folder.join("tiles.json")).unwrap()).unwrap();
+    let views = plan["tiles"][0]["cells"][0]["views"].as_array().unwrap();
+    let is_read = |name: &str| views.iter().any(|view| view["view"] == name);
+    let images = block.scene().join("images");
+    let head = |name: &str| {
+        let mut inputs = plan["inputs"].as_array().unwrap().iter();
+        let found = inputs.find(|input| input["file"] == format!("images/{name}"));
+        found.unwrap()["head"]["bytes"].as_u64()
+    };
+    let make = || {
+        let _ = fs::remove_file(folder.join("parts/1.part"));
+        block.command().args(["tile", "few", "1"]).output().unwrap()
+    };
+    let part = || fs::read(folder.join("parts/1.part")).unwrap();
+    assert!(make().status.success());
+    let sound = part();
+    let [mut others, mut refused] = [0, 0];
+    for (name, bytes) in files_in(&images) {
+        let path = images.join(&name);
+        // 64 kB, and at most the two blocks in which a directory stands.
+        let head = head(&name).unwrap();
+        assert!(
+            head < bytes.len() as u64 && head <= (64 + 32) << 10,
+            "{name}: {head}"
+        );
+        // A pixel between the first bytes and all directories.
+        fs::write(&path, changed_at(&bytes, 0.75)).unwrap();
+        let output = make();
+        if is_read(&name) && !output.status.success() {
+            let named = format!("{name}: the file has changed since the plan was made");
+            block.is_refused(&output, &[&named]);
+            refused += 1;
+        } else {
+            // Another photograph, or a block of it that holds nothing of the window.
+            assert!(output.status.success(), "{}", words(&output));
+            assert!(part() == sound);
+            others += 1;
+            // Its directory says where it stands.
+            let mut moved = bytes.clone();
+            moved[tiff::directory_of(&bytes) + 30] ^= 1;
+            fs::write(&path, moved).unwrap();
+            let named = format!("{name}: the file has changed since the plan was made");
+            block.is_refused(&make(), &[&named]);
+        }
+        fs::write(&path, bytes).unwrap();
+    }
+    assert!(others > 2 && refused > 0, "{others} {refused}");
+    // The files of an archive are read whole, to the same results.
+    let archive = common::zipped(&tiff_files());
     fs::write(block.0.path().join("scene.zip"), archive).unwrap();
     let model_of = |scene: &str, out: &str| {
         let mut command = block.command();

@@ -3,7 +3,7 @@
 //! ```text
 //! args, failure   arguments; why a command stopped
 //! walk, files     the files of a folder or archive; writing results
-//! scene_files     photographs by their first bytes, until their pixels are needed
+//! scene_files     photographs by their head, until their pixels are needed
 //! input           a scene's files, options and parameters
 //! check           the orientation check alone
 //! orient          photographs alone: their orientation

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::execution::progress::{Listener, with_listener};
-use ridgeline::orientation::{FileSource, InputFile};
+use ridgeline::orientation::{FileSource, InputFile, Needed};
 use ridgeline::structure_from_motion::{
     FeatureOptions, GroundControl, OrientOptions, orient as orient_photos,
 };
@@ -32,7 +32,7 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
     }
     let seen = format!("{} holds {seen}", args.photos.display());
     // All of them are matched.
-    let whole = read.hold(&|files| (0..files.len()).collect());
+    let whole = read.hold(&Needed::all);
     whole.map_err(|e| input::refusal(&e, &seen))?;
     let mut photographs = read.files;
     if let Some(path) = &args.gcp {

@@ -7,7 +7,7 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::agreement::Finding;
 use ridgeline::execution::progress::Listener;
-use ridgeline::orientation::FileSource;
+use ridgeline::orientation::{FileSource, Needed};
 use ridgeline::pipeline::{Run, Stage, counted};
 use ridgeline::scene::Scene;
 use ridgeline::scene_loader::{
@@ -92,7 +92,7 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     let written = run.files(&seconds);
     files::write_all(&args.out, &written)?;
     if let (Some(path), Some(mut input)) = (&args.project, input) {
-        let whole = input.hold(&|files| (0..files.len()).collect());
+        let whole = input.hold(&Needed::all);
         whole.map_err(refuse)?;
         let project = Project::new(options, run.params().clone());
         let packed = project.pack(&input.files, &written);

@@ -1,19 +1,17 @@
-//! The files of a scene: of large photographs the first bytes are in memory, until a step needs
-//! their pixels.
+//! The files of a scene: of large photographs the head is in memory, until a step needs their
+//! pixels.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use ridgeline::orientation::{FileSource, InputFile};
+use ridgeline::orientation::{FileSource, InputFile, Needed, PhotographHead};
+use ridgeline::raster::HeaderNeeds;
 use ridgeline::tiles::InputStamp;
 
-/// The headers of most photographs fit into the first of these; what has its own behind all of
-/// them is read whole. As on the page (`www/src/worker/projectFiles.ts`).
-const HEAD_BYTES: [usize; 3] = [64 << 10, 512 << 10, 2 << 20];
-
-/// Files in memory, and where photographs lie of which only the first bytes are there.
+/// Files in memory, and where photographs lie of which only the head is there.
 #[derive(Default)]
 pub(super) struct SceneFiles {
     pub files: Vec<InputFile>,
@@ -21,32 +19,23 @@ pub(super) struct SceneFiles {
 }
 
 impl SceneFiles {
-    /// Reads a file, of a large photograph the first bytes; `relative` is its path in the scene.
+    /// Reads a file, of a large photograph the head; `relative` is its path in the scene.
     pub(super) fn read(&mut self, path: &Path, relative: &str) -> io::Result<InputFile> {
         let mut file = File::open(path)?;
-        let length = file.metadata()?.len();
-        let mut bytes = Vec::new();
-        for size in HEAD_BYTES {
-            if length <= size as u64 {
+        let mut head = PhotographHead::new(relative, file.metadata()?.len());
+        while let HeaderNeeds::Range(range) = head.needs() {
+            let mut bytes = Vec::new();
+            file.seek(SeekFrom::Start(range.start))?;
+            (file.by_ref().take(range.end - range.start)).read_to_end(&mut bytes)?;
+            if !head.add(range, &bytes) {
                 break;
-            }
-            let more = (size - bytes.len()) as u64;
-            file.by_ref().take(more).read_to_end(&mut bytes)?;
-            if !is_photograph(&bytes) {
-                break;
-            }
-            match InputFile::photograph(relative, bytes, length) {
-                Ok(head) => {
-                    self.sources.insert(head.path.clone(), path.to_owned());
-                    return Ok(head);
-                }
-                Err(back) => bytes = back,
             }
         }
-        let rest = usize::try_from(length).unwrap_or_default();
-        bytes.try_reserve_exact(rest.saturating_sub(bytes.len()))?;
-        file.read_to_end(&mut bytes)?;
-        Ok(InputFile::new(relative, bytes))
+        if let Some(head) = InputFile::photograph(head) {
+            self.sources.insert(head.path.clone(), path.to_owned());
+            return Ok(head);
+        }
+        Ok(InputFile::new(relative, fs::read(path)?))
     }
 
     /// Other files of the same scene, in their order.
@@ -73,30 +62,44 @@ impl FileSource for SceneFiles {
         &self.files
     }
 
-    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<usize>) -> ridgeline::Result<()> {
-        let needed: BTreeSet<usize> = needed(&self.files).into_iter().collect();
-        let others = self.files.iter_mut().enumerate();
-        let others = others.filter(|(i, _)| !needed.contains(i));
-        others.for_each(|(_, file)| file.empty());
-        for i in needed {
-            let file = &mut self.files[i];
+    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<Needed>) -> ridgeline::Result<()> {
+        let needed = needed(&self.files);
+        let (held, lacking): (Vec<_>, Vec<_>) =
+            needed.iter().partition(|one| one.is_in(&self.files));
+        for (i, file) in self.files.iter_mut().enumerate() {
+            if held.iter().all(|one| one.file != i) {
+                file.empty();
+            }
+        }
+        for one in lacking {
+            let file = &mut self.files[one.file];
             let Some(source) = file.lacking() else {
                 continue;
             };
-            let bytes = fs::read(&self.sources[source]).map_err(|e| gone(file, &e.to_string()))?;
-            let is_same = bytes.len() as u64 == file.length() && bytes.starts_with(&file.bytes);
-            if !is_same {
-                return Err(gone(file, "it has changed since its first bytes were read"));
+            let path = &self.sources[source];
+            let filled = match &one.ranges {
+                None => fs::read(path).map(|bytes| file.fill(bytes)),
+                Some(ranges) => read_ranges(path, ranges).map(|b| file.fill_ranges(ranges, &b)),
+            };
+            match filled {
+                Ok(true) => {}
+                Ok(false) => return Err(gone(file, "it has changed since its head was read")),
+                Err(e) => return Err(gone(file, &e.to_string())),
             }
-            file.fill(bytes);
         }
         Ok(())
     }
 }
 
-/// A JPEG or a PNG, by its first bytes: others say what they are anywhere.
-fn is_photograph(bytes: &[u8]) -> bool {
-    bytes.starts_with(&[0xff, 0xd8]) || bytes.starts_with(b"\x89PNG")
+/// Some ranges of a file, one after the other.
+fn read_ranges(path: &Path, ranges: &[Range<u64>]) -> io::Result<Vec<u8>> {
+    let mut file = File::open(path)?;
+    let mut bytes = Vec::new();
+    for range in ranges {
+        file.seek(SeekFrom::Start(range.start))?;
+        (file.by_ref().take(range.end - range.start)).read_to_end(&mut bytes)?;
+    }
+    Ok(bytes)
 }
 
 /// The refusal of a photograph that was there when the scene was read.

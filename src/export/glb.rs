@@ -13,6 +13,8 @@
 //!     └ ground            extras { building, surface: "ground" }
 //! ```
 
+use std::ops::Range;
+
 use gltf_json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf_json::buffer::Target;
 use gltf_json::mesh::{Mode, Semantic};
@@ -27,13 +29,29 @@ use crate::texture::{FaceTexture, TexturedModel};
 
 /// The model as a GLB file with the atlas, given as JPEG, inside.
 pub fn glb(scene: &Scene, model: &RoofModel, textured: &TexturedModel, atlas: &[u8]) -> Vec<u8> {
+    glb_of(
+        scene,
+        model,
+        0..model.buildings.len(),
+        (&textured.faces, atlas),
+    )
+}
+
+/// Some buildings of a model, which follow each other, with the textures of their faces and the
+/// atlas of these alone; their numbers are those of the model.
+pub fn glb_of(
+    scene: &Scene,
+    model: &RoofModel,
+    buildings: Range<usize>,
+    (faces, atlas): (&[Vec<FaceTexture>], &[u8]),
+) -> Vec<u8> {
     let mut file = GlbFile::default();
     let mut nodes = Vec::new();
-    if !model.buildings.is_empty() {
+    if !buildings.is_empty() {
         file.add_material(atlas);
     }
-    for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
-        nodes.push(file.add_building(i, building, textures));
+    for (i, textures) in buildings.zip(faces) {
+        nodes.push(file.add_building(i, &model.buildings[i], textures));
     }
     file.finish(nodes, scene)
 }

@@ -39,11 +39,12 @@ mod walls;
 pub use cityjson::city_json_seq;
 pub use evidence::evidence_json;
 pub use format::{ATLAS_FILE, MATERIAL_FILE};
-pub use glb::glb;
+pub use glb::{glb, glb_of};
 pub use json::{half_planes_json, lines_json, segments_json};
 pub use mesh::{mtl, obj, ply};
 pub use plans::{dxf, lines_csv};
 pub use report::report_files;
+pub use tileset::{SquareContent, TILESET_FILE, tileset_of_squares};
 
 use image::codecs::jpeg::JpegEncoder;
 
@@ -98,7 +99,7 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
         ("model.city.json", city),
         ("model.glb", glb(scene, model, textured, &atlas)),
         (ATLAS_FILE, atlas),
-        ("tileset.json", tileset::tileset(scene, model, "model.glb")),
+        (TILESET_FILE, tileset::tileset(scene, model, "model.glb")),
         ("model.obj", obj(scene, model, textured)),
         (MATERIAL_FILE, mtl()),
         ("model.ply", ply(scene, model, lines)),

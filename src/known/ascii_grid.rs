@@ -14,7 +14,7 @@ use crate::orientation::InputFile;
 
 /// Does a file begin as such a grid does?
 pub(super) fn is_ascii_grid(file: &InputFile) -> bool {
-    let head = file.head(64);
+    let head = file.start_as_text(64);
     head.is_some_and(|text| text.trim_start().to_ascii_lowercase().starts_with("ncols"))
 }
 

@@ -12,7 +12,7 @@ use crate::raster::{Directory, NumberRaster, tiff_tags as tags};
 const RASTER_TYPE: u64 = 1025;
 
 pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid> {
-    let raster = NumberRaster::read(&file.path, &file.bytes)?;
+    let raster = NumberRaster::read(&file.path, file.content())?;
     let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
     let reproject = "convert it with gdalwarp to the system of the orientation, in metres";
     let keys = raster.directory.numbers(tags::GEO_KEY_DIRECTORY);

@@ -191,7 +191,7 @@ impl Register {
                  becomes GeoJSON with ogr2ogr",
             )
         };
-        let text = file.head(1024).ok_or_else(none)?;
+        let text = file.start_as_text(1024).ok_or_else(none)?;
         if !text
             .trim_start_matches('\u{feff}')
             .trim_start()

@@ -144,10 +144,10 @@ pub(crate) const POINT_CLOUD: &[u8] = b"LASF";
 
 /// Recognises a file.
 pub fn detect(file: &InputFile) -> FileKind {
-    if crate::raster::unread_image_format(&file.path, &file.bytes).is_some_and(|f| f.is_image) {
+    if crate::raster::unread_image_format(&file.path, file.content()).is_some_and(|f| f.is_image) {
         return FileKind::UnreadImage;
     }
-    if crate::raster::is_height_raster(&file.bytes) || file.bytes.starts_with(POINT_CLOUD) {
+    if crate::raster::is_height_raster(file.content()) || file.bytes.starts_with(POINT_CLOUD) {
         return FileKind::Terrain;
     }
     if crate::raster::image_format(&file.bytes).is_some() {
@@ -156,7 +156,7 @@ pub fn detect(file: &InputFile) -> FileKind {
     if file.name().eq_ignore_ascii_case(GCP_LIST) {
         return FileKind::Ignored;
     }
-    if let Some(text) = file.head(HEAD_BYTES) {
+    if let Some(text) = file.start_as_text(HEAD_BYTES) {
         if text
             .trim_start_matches('\u{feff}')
             .trim_start()

@@ -1,37 +1,52 @@
 //! Files as the caller hands them over.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
-use image::ImageFormat;
-
-use crate::error;
-use crate::raster::{image_format, image_header};
+use super::photograph_head::{PhotographHead, gathered};
+#[cfg(test)]
+use crate::raster::image_format;
+use crate::raster::{Excerpt, HeaderNeeds, Piece};
 
 /// How much of a file is inspected: enough for the longest comment header.
 pub(super) const HEAD_BYTES: usize = 64 * 1024;
 
-/// A file in memory: whole, or of a photograph the first bytes as long as no pixel is needed, since
-/// a flight is larger than the memory that there is.
+/// A file in memory: whole, or of a photograph the head ([`PhotographHead`]) as long as no pixel is
+/// needed, since a flight is larger than the memory that there is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputFile {
     /// Its path within the scene, folders separated by slashes.
     pub path: String,
-    /// Its content; of a photograph that is not filled its first bytes.
+    /// Its content; of a photograph that is not filled its head, whose start is that of the file.
     pub bytes: Vec<u8>,
     head: Option<Head>,
 }
 
-/// What is known of a photograph by its first bytes.
+/// What is known of a photograph by its head.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Head {
     /// The path under which it was read.
     source: String,
-    /// Bytes of the head.
-    bytes: usize,
+    /// Where the bytes of the head stand in the file, then those of the ranges that are filled.
+    pieces: Vec<Piece>,
+    /// How many of them are the head's.
+    of_head: usize,
     /// Bytes of the whole file.
     whole: u64,
     /// Are all of them here?
-    is_filled: bool,
+    is_whole: bool,
+}
+
+impl Head {
+    fn of_head(&self) -> &[Piece] {
+        &self.pieces[..self.of_head]
+    }
+
+    /// Bytes of the head.
+    fn bytes(&self) -> usize {
+        let length: u64 = self.of_head().iter().map(Piece::length).sum();
+        length as usize
+    }
 }
 
 impl InputFile {
@@ -44,23 +59,37 @@ impl InputFile {
         }
     }
 
-    /// A photograph by its first bytes, `whole` being its length; the bytes again where they do not
-    /// suffice to plan with.
-    pub fn photograph(path: &str, bytes: Vec<u8>, whole: u64) -> Result<Self, Vec<u8>> {
-        // The directory of a TIFF may stand at its end.
-        let is_enough = image_format(&bytes).is_some_and(|format| format != ImageFormat::Tiff)
-            && image_header(path, &bytes).is_ok();
-        if !is_enough {
-            return Err(bytes);
-        }
-        let mut file = Self::new(path, bytes);
+    /// A photograph by its head; `None` where that does not suffice to plan with.
+    pub fn photograph(head: PhotographHead) -> Option<Self> {
+        let is_enough = head.needs() == HeaderNeeds::Nothing;
+        is_enough.then(|| Self::of_head(head))
+    }
+
+    fn of_head(head: PhotographHead) -> Self {
+        let PhotographHead {
+            path,
+            bytes,
+            pieces,
+            whole,
+        } = head;
+        let mut file = Self::new(&path, bytes);
         file.head = Some(Head {
             source: file.path.clone(),
-            bytes: file.bytes.len(),
+            of_head: pieces.len(),
+            pieces,
             whole,
-            is_filled: false,
+            is_whole: false,
         });
-        Ok(file)
+        file
+    }
+
+    /// A photograph by its first half; none of other files.
+    #[cfg(test)]
+    pub(crate) fn half(&self) -> Option<Self> {
+        let half = self.bytes.len() / 2;
+        let mut head = PhotographHead::new(&self.path, self.length());
+        head.add(0..half as u64, &self.bytes[..half]);
+        image_format(&self.bytes).map(|_| Self::of_head(head))
     }
 
     /// Under another path.
@@ -71,39 +100,122 @@ impl InputFile {
         }
     }
 
-    /// Gives a photograph its whole bytes; false where it is not held by its first ones.
+    /// Gives a photograph its whole bytes; false where it is not held by its head, or that is
+    /// another one.
     pub fn fill(&mut self, bytes: Vec<u8>) -> bool {
-        if let Some(head) = &mut self.head {
-            head.is_filled = true;
+        let Some(head) = &mut self.head else {
+            return false;
+        };
+        let of_head = self.bytes.get(..head.bytes()).unwrap_or_default();
+        let is_same = bytes.len() as u64 == head.whole
+            && (head.is_whole || *of_head == gathered(head.of_head(), &bytes));
+        if is_same {
+            head.pieces.truncate(head.of_head);
+            head.is_whole = true;
             self.bytes = bytes;
         }
-        self.head.is_some()
+        is_same
     }
 
-    /// Leaves the first bytes of a photograph that was filled.
+    /// Gives a photograph some ranges beside its head, instead of what it was filled with; `bytes`
+    /// are those of all, one after the other. False where it is not held by its head, or the bytes
+    /// are fewer.
+    pub fn fill_ranges(&mut self, ranges: &[Range<u64>], bytes: &[u8]) -> bool {
+        self.empty();
+        let length: u64 = ranges.iter().map(|range| range.end - range.start).sum();
+        let Some(head) = self.head.as_mut().filter(|_| bytes.len() as u64 == length) else {
+            return false;
+        };
+        let mut at = self.bytes.len();
+        for place in ranges {
+            let piece = Piece {
+                place: place.clone(),
+                at,
+            };
+            at += piece.length() as usize;
+            head.pieces.push(piece);
+        }
+        self.bytes.extend_from_slice(bytes);
+        true
+    }
+
+    /// Are these ranges of it in memory, or all of it where none are given?
+    pub(super) fn has(&self, ranges: Option<&[Range<u64>]>) -> bool {
+        match (&self.head, ranges) {
+            (None, _) => true,
+            (Some(head), None) => head.is_whole,
+            (Some(head), Some(ranges)) => {
+                let places = head.pieces[head.of_head..].iter().map(|piece| &piece.place);
+                head.is_whole || places.eq(ranges)
+            }
+        }
+    }
+
+    /// Is it whole from the beginning, and stays so?
+    pub(super) fn is_always_whole(&self) -> bool {
+        self.head.is_none()
+    }
+
+    /// The ranges that are filled beside its head, with their bytes; none where it is whole.
+    pub(crate) fn filled_ranges(&self) -> impl Iterator<Item = (Range<u64>, &[u8])> {
+        let pieces = self
+            .head
+            .iter()
+            .flat_map(|head| &head.pieces[head.of_head..]);
+        pieces.map(|piece| {
+            let end = piece.at + piece.length() as usize;
+            (piece.place.clone(), &self.bytes[piece.at..end])
+        })
+    }
+
+    /// Leaves the head of a photograph that was filled.
     pub fn empty(&mut self) {
-        if let Some(head) = self.head.as_mut().filter(|head| head.is_filled) {
-            head.is_filled = false;
-            self.bytes.truncate(head.bytes);
+        let Some(head) = &mut self.head else {
+            return;
+        };
+        head.pieces.truncate(head.of_head);
+        if std::mem::take(&mut head.is_whole) {
+            self.bytes = gathered(&head.pieces, &self.bytes);
+        } else {
+            self.bytes.truncate(head.bytes());
             self.bytes.shrink_to_fit();
         }
     }
 
-    /// The path under which a photograph was read of which only the first bytes are here.
+    /// The path under which a photograph was read that is not whole.
     pub fn lacking(&self) -> Option<&str> {
-        let head = self.head.as_ref().filter(|head| !head.is_filled)?;
+        let head = self.head.as_ref().filter(|head| !head.is_whole)?;
         Some(&head.source)
     }
 
-    /// Was it filled?
+    /// Was it filled, as a whole or with ranges?
     pub fn is_filled(&self) -> bool {
-        self.head.as_ref().is_some_and(|head| head.is_filled)
+        let is_filled = |head: &Head| head.is_whole || head.pieces.len() > head.of_head;
+        self.head.as_ref().is_some_and(is_filled)
     }
 
-    /// What of it always is in memory: the first bytes of a photograph, all of another file.
-    pub fn first_bytes(&self) -> &[u8] {
-        let most = self.head.as_ref().map_or(usize::MAX, |head| head.bytes);
-        &self.bytes[..self.bytes.len().min(most)]
+    /// What of it is in memory, for readers of images.
+    pub fn content(&self) -> Excerpt<'_> {
+        match self.head.as_ref().filter(|head| !head.is_whole) {
+            Some(head) => Excerpt::new(&self.bytes, &head.pieces, head.whole),
+            None => (&self.bytes).into(),
+        }
+    }
+
+    /// What of it always is in memory: the head of a photograph, all of another file.
+    pub fn head(&self) -> Cow<'_, [u8]> {
+        match &self.head {
+            Some(head) if head.is_whole => Cow::Owned(gathered(&head.pieces, &self.bytes)),
+            Some(head) => Cow::Borrowed(&self.bytes[..head.bytes()]),
+            None => Cow::Borrowed(&self.bytes),
+        }
+    }
+
+    /// Bytes of [`Self::head`].
+    pub fn head_length(&self) -> u64 {
+        let all = self.bytes.len() as u64;
+        let of_head = |head: &Head| head.bytes() as u64;
+        self.head.as_ref().map_or(all, of_head)
     }
 
     /// Bytes of the whole file.
@@ -128,31 +240,10 @@ impl InputFile {
     }
 
     /// Its first bytes as text; `None` where it is none.
-    pub(crate) fn head(&self, bytes: usize) -> Option<Cow<'_, str>> {
+    pub(crate) fn start_as_text(&self, bytes: usize) -> Option<Cow<'_, str>> {
         let head = &self.bytes[..self.bytes.len().min(bytes)];
         let is_text = utf16(head).is_some() || !head.contains(&0);
         is_text.then(|| decoded(head))
-    }
-}
-
-/// The files of a scene, and who gives photographs their whole bytes when their pixels are needed.
-pub trait FileSource {
-    /// All files.
-    fn files(&self) -> &[InputFile];
-
-    /// Makes these files whole, by their indices, and lets go of all others; refused by name where
-    /// one cannot be had any more.
-    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<usize>) -> error::Result<()>;
-}
-
-/// Files that are whole, or were made whole before.
-impl FileSource for &[InputFile] {
-    fn files(&self) -> &[InputFile] {
-        self
-    }
-
-    fn hold(&mut self, _: &dyn Fn(&[InputFile]) -> Vec<usize>) -> error::Result<()> {
-        Ok(())
     }
 }
 
@@ -216,30 +307,40 @@ pub(crate) fn stem(path: &str) -> &str {
 mod tests {
     use super::*;
 
+    /// The head of a file, read as it asks for.
+    fn head_of(path: &str, bytes: &[u8]) -> Option<InputFile> {
+        let mut head = PhotographHead::new(path, bytes.len() as u64);
+        while let HeaderNeeds::Range(range) = head.needs() {
+            let part = &bytes[range.start as usize..range.end as usize];
+            assert!(head.add(range, part));
+        }
+        InputFile::photograph(head)
+    }
+
     #[test]
     fn a_photograph_is_whole_only_while_it_is_filled() {
         let mut png = std::io::Cursor::new(Vec::new());
-        let image = image::RgbImage::from_fn(40, 30, |x, y| image::Rgb([x as u8, y as u8, 7]));
-        image.write_to(&mut png, ImageFormat::Png).unwrap();
+        let mut random = crate::testing::uniform(1);
+        let image = image::RgbImage::from_fn(200, 150, |_, _| {
+            image::Rgb([0; 3].map(|_: u8| (256.0 * random()) as u8))
+        });
+        image.write_to(&mut png, image::ImageFormat::Png).unwrap();
         let png = png.into_inner();
         let length = png.len() as u64;
-        // The length and sum of the first chunk end at byte 33.
-        let cut = png[..20].to_vec();
-        assert_eq!(
-            InputFile::photograph("a.png", cut.clone(), length),
-            Err(cut)
-        );
-        let text = b"1 2 3".to_vec();
-        assert!(InputFile::photograph("a.txt", text, 100).is_err());
-        let file = InputFile::photograph("in\\a.png", png[..60].to_vec(), length).unwrap();
+        assert_eq!(head_of("a.txt", &vec![b' '; 100_000]), None);
+        assert_eq!(head_of("a.png", &png[..60_000]), None);
+        let file = head_of("in\\a.png", &png).unwrap();
         let mut file = file.renamed("b.png");
         let head = file.clone();
         assert_eq!((&*file.path, file.lacking()), ("b.png", Some("in/a.png")));
         assert_eq!((file.length(), file.is_filled()), (length, false));
+        let mut changed = png.clone();
+        changed[50] ^= 1;
+        assert!(!file.fill(changed) && !file.fill(png[1..].to_vec()));
         assert!(file.fill(png.clone()));
         assert_eq!((&file.bytes, file.lacking()), (&png, None));
         assert_eq!((file.length(), file.is_filled()), (length, true));
-        assert_eq!(file.first_bytes(), &png[..60]);
+        assert_eq!(&*file.head(), &png[..64 << 10]);
         file.empty();
         assert_eq!(file, head);
         assert!(!InputFile::new("a.txt", Vec::new()).fill(png));
@@ -261,13 +362,13 @@ mod tests {
         for bytes in [text.as_bytes().to_vec(), little, big, western] {
             let file = InputFile::new("a.txt", bytes);
             assert_eq!(file.text(), text);
-            assert_eq!(file.head(1000).unwrap(), text);
+            assert_eq!(file.start_as_text(1000).unwrap(), text);
         }
         let old = InputFile::new("a.txt", b"a\rb\r".to_vec());
         assert_eq!(old.text(), "a\nb\n");
-        assert_eq!(InputFile::new("a", vec![1, 0, 0]).head(9), None);
+        assert_eq!(InputFile::new("a", vec![1, 0, 0]).start_as_text(9), None);
         // A head that ends within a character stays UTF-8.
         let file = InputFile::new("a", "aö".as_bytes().to_vec());
-        assert!(file.head(2).unwrap().starts_with("a\u{fffd}"));
+        assert!(file.start_as_text(2).unwrap().starts_with("a\u{fffd}"));
     }
 }

@@ -1,7 +1,9 @@
 //! Orientation files: recognised by their content, read into one form.
 //!
 //! ```text
-//! input_file         a file in memory, or the first bytes of a photograph
+//! input_file         a file in memory, or the head of a photograph
+//! needed             what is needed of a file, all of it or blocks of it, and who gives it
+//! photograph_head    what of a photograph is read to plan with it
 //! image_orientation  interior and exterior orientation of one image: what every reader returns
 //! angles             omega, phi, kappa and their units
 //! geodesy            the ellipsoid, and the anchor of a local frame on it
@@ -42,6 +44,8 @@ mod geodesy;
 mod image_orientation;
 mod input_file;
 mod metric_frame;
+mod needed;
+mod photograph_head;
 mod reference;
 mod sets;
 mod transverse_mercator;
@@ -58,9 +62,11 @@ pub use format::Format;
 pub use geodesy::Anchor;
 pub(crate) use geodesy::geocentric_of;
 pub use image_orientation::{Crop, Orientation};
+pub use input_file::InputFile;
 pub(crate) use input_file::stem;
-pub use input_file::{FileSource, InputFile};
 pub use metric_frame::to_metric_frame;
+pub use needed::{BLOCK_BYTES, FileSource, Needed};
+pub use photograph_head::PhotographHead;
 pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};
 pub(crate) use transverse_mercator::TransverseMercator;

@@ -242,7 +242,7 @@ fn add_files_beside(inputs: &[InputFile], kinds: &[FileKind], set: &mut Orientat
 fn nearly_a_list(input: &InputFile) -> Option<String> {
     const MOST_BYTES: usize = 1 << 20;
     // A list of more than some thousand images is none that a scene is made of.
-    let text = input.head(MOST_BYTES)?;
+    let text = input.start_as_text(MOST_BYTES)?;
     let error = photogrammetric::nearly_a_list(&input.path, &text)?;
     Some(error.to_string().replace("; ", ", "))
 }

@@ -199,7 +199,7 @@ pub(crate) fn by_name(file: &InputFile) -> Option<&'static UnreadFormat> {
 /// The format of a file.
 pub(crate) fn of(file: &InputFile) -> Option<&'static UnreadFormat> {
     let head = &file.bytes[..file.bytes.len().min(HEAD_BYTES)];
-    let text = file.head(HEAD_BYTES);
+    let text = file.start_as_text(HEAD_BYTES);
     let text = text.unwrap_or_else(|| String::from_utf8_lossy(head));
     by_content(&text).or_else(|| by_name(file))
 }

@@ -30,10 +30,12 @@ mod warp;
 
 pub use channel::Channel;
 pub use files::{
-    Bands, ImageHeader, UnreadImageFormat, decoding_bytes, image_format, image_header, load_image,
-    load_window, unread_image_format,
+    Bands, Excerpt, HeaderNeeds, ImageHeader, Piece, UnreadImageFormat, decoding_bytes,
+    header_needs, image_format, image_header, load_image, load_window, unread_image_format,
 };
-pub(crate) use files::{Directory, NumberRaster, is_height_raster, is_tiff, tiff_tags};
+pub(crate) use files::{
+    Directory, NumberRaster, is_height_raster, is_tiff, tiff_tags, window_ranges,
+};
 pub(crate) use fill::{fill_gaps, mark_inside};
 pub use filter::gaussian_blur;
 pub use gray::Gray;

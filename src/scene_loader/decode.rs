@@ -4,8 +4,8 @@ use super::planned_view::{PlannedView, offset_calibration};
 use super::region;
 use crate::camera::undistort;
 use crate::error::{Error, Result};
-use crate::orientation::InputFile;
-use crate::raster::{load_image, load_window};
+use crate::orientation::{InputFile, Needed};
+use crate::raster::{PixelWindow, load_image, load_window};
 use crate::scene::View;
 
 /// Decodes all views, at the same time where that does not take much more memory.
@@ -23,24 +23,58 @@ pub(crate) fn decode_all(files: &[InputFile], planned: &[PlannedView]) -> Result
     }
 }
 
+/// What decoding a view needs of its photograph.
+pub(crate) fn needed(files: &[InputFile], planned: &PlannedView) -> Needed {
+    Needed::of_window(files, planned.file, Windows::of(planned).stored)
+}
+
+/// The parts of an image that a view is made of: column, row, width and height.
+struct Windows {
+    /// Of the reduced image without its lens.
+    part: PixelWindow,
+    /// Of the reduced image.
+    source: PixelWindow,
+    /// Of the image as it is stored.
+    stored: PixelWindow,
+    /// Is that all of it?
+    is_all: bool,
+}
+
+impl Windows {
+    fn of(planned: &PlannedView) -> Self {
+        let whole = &planned.whole;
+        let part = (planned.part).unwrap_or([0, 0, whole.width, whole.height]);
+        let source = match &planned.distortion {
+            Some(lens) => region::source_of(part, whole, lens),
+            None => part,
+        };
+        let unreduced = source.map(|pixels| pixels * planned.reduction);
+        let [full_width, full_height] = planned.size;
+        let stored = match planned.turn {
+            Some(turn) => turn.stored_window(unreduced, [full_height, full_width]),
+            None => unreduced,
+        };
+        Self {
+            part,
+            source,
+            stored,
+            is_all: unreduced == [0, 0, full_width, full_height],
+        }
+    }
+}
+
 /// Decodes the part of a view that is used, and removes its distortion.
 fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
     let whole = &planned.whole;
-    let all = [0, 0, whole.width, whole.height];
-    let part = planned.part.unwrap_or(all);
-    let source = match &planned.distortion {
-        Some(lens) => region::source_of(part, whole, lens),
-        None => part,
-    };
-    let unreduced = source.map(|pixels| pixels * planned.reduction);
-    let [full_width, full_height] = planned.size;
-    let stored = match planned.turn {
-        Some(turn) => turn.stored_window(unreduced, [full_height, full_width]),
-        None => unreduced,
-    };
-    let mut photograph = match unreduced == [0, 0, full_width, full_height] {
-        true => load_image(&file.path, &file.bytes)?,
-        false => load_window(&file.path, &file.bytes, stored)?,
+    let Windows {
+        part,
+        source,
+        stored,
+        is_all,
+    } = Windows::of(planned);
+    let mut photograph = match is_all {
+        true => load_image(&file.path, file.content())?,
+        false => load_window(&file.path, file.content(), stored)?,
     };
     if photograph.rgb.dimensions() != (stored[2], stored[3]) {
         return Err(Error::File {

@@ -7,7 +7,7 @@
 
 use nalgebra::{Point2, Point3};
 
-use super::decode::decode_all;
+use super::decode::{decode_all, needed};
 use super::input::LoadOptions;
 use super::plan::Plan;
 use super::planned_view::PlannedView;
@@ -15,7 +15,7 @@ use super::region::MOST_VIEWS;
 use crate::camera::Camera;
 use crate::geometry::mean_point;
 use crate::math::median;
-use crate::orientation::InputFile;
+use crate::orientation::{InputFile, Needed};
 use crate::orientation_check::{CheckedView, surface_heights};
 
 /// So many photographs show the ground. Assumption: a pair may have no baseline, four have one.
@@ -130,16 +130,16 @@ pub fn ground_heights(files: &[InputFile], options: &LoadOptions) -> Option<[f64
     Some(heights.map(|z| z + whole.origin.z))
 }
 
-/// Indices of the files in whose pixels [`ground_heights`] measures. Of the files their first bytes
-/// suffice.
-pub fn ground_files(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
-    files_near(&unreduced_plan(files, options), None)
+/// What is needed of the files in whose pixels [`ground_heights`] measures. Of the files their
+/// heads suffice.
+pub fn ground_files(files: &[InputFile], options: &LoadOptions) -> Vec<Needed> {
+    files_near(files, &unreduced_plan(files, options), None)
 }
 
-/// Indices of the files in whose pixels [`settled`] and
+/// What is needed of the files in whose pixels [`settled`] and
 /// [`ShownArea`](super::ShownArea) measure the height of the ground: none where nothing is open. Of
-/// the files their first bytes suffice.
-pub fn files_of_settling(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
+/// the files their heads suffice.
+pub fn files_of_settling(files: &[InputFile], options: &LoadOptions) -> Vec<Needed> {
     let is_settled = options.reduction.is_some() && options.roi.is_some();
     if options.ground_z.is_some() || is_settled {
         return Vec::new();
@@ -147,40 +147,39 @@ pub fn files_of_settling(files: &[InputFile], options: &LoadOptions) -> Vec<usiz
     let whole = whole_plan(files, options);
     match options.roi.is_some() && are_small(&whole) {
         true => Vec::new(),
-        false => files_near(&whole, None),
+        false => files_near(files, &whole, None),
     }
 }
 
-/// Indices of the files in whose pixels loading measures the height of the ground, before it
+/// What is needed of the files in whose pixels loading measures the height of the ground, before it
 /// decides by how much photographs are reduced, and before it chooses views: none where both are
-/// known. Of the files their first bytes suffice. Flights state the first: see [`settled`].
-pub fn files_of_ground(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
+/// known. Of the files their heads suffice. Flights state the first: see [`settled`].
+pub fn files_of_ground(files: &[InputFile], options: &LoadOptions) -> Vec<Needed> {
     if options.ground_z.is_some() {
         return Vec::new();
     }
     let whole = whole_plan(files, options);
     let is_undecided = options.reduction.is_none() && !are_small(&whole);
-    let mut needed = match is_undecided && whole.views.len() <= MOST_VIEWS {
-        true => files_near(&whole, None),
+    let mut measured = match is_undecided && whole.views.len() <= MOST_VIEWS {
+        true => files_near(files, &whole, None),
         false => Vec::new(),
     };
     if let (Some(roi), true) = (options.roi, Plan::new(files, options, None).is_chosen) {
-        needed.extend(files_near(&whole, Some(middle_of(roi))));
+        measured.extend(files_near(files, &whole, Some(middle_of(roi))));
     }
-    needed.sort_unstable();
-    needed.dedup();
-    needed
+    Needed::merged(measured, files)
 }
 
-/// Indices of the files whose pixels loading makes views of. Of these their first bytes suffice, of
-/// [`files_of_ground`] all are needed.
-pub fn files_of_views(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
+/// What is needed of the files whose pixels loading makes views of. Of these their heads suffice,
+/// of [`files_of_ground`] all are needed.
+pub fn files_of_views(files: &[InputFile], options: &LoadOptions) -> Vec<Needed> {
     let plan = plan_scene(files, options);
-    plan.views.iter().map(|view| view.file).collect()
+    plan.views.iter().map(|view| needed(files, view)).collect()
 }
 
-fn files_near(whole: &Plan, place: Option<Point2<f64>>) -> Vec<usize> {
-    nearest(whole, place).iter().map(|view| view.file).collect()
+fn files_near(files: &[InputFile], whole: &Plan, place: Option<Point2<f64>>) -> Vec<Needed> {
+    let nearest = nearest(whole, place);
+    nearest.iter().map(|view| needed(files, view)).collect()
 }
 
 fn middle_of([x0, y0, x1, y1]: [f64; 4]) -> Point2<f64> {

@@ -2,7 +2,7 @@
 
 use super::checks::camera_checks::check_cameras;
 use super::checks::check_and_correct;
-use super::decode::decode_all;
+use super::decode::{decode_all, needed};
 use super::ground::{files_of_ground, files_of_settling, plan_scene, settled, whole_plan};
 use super::input::LoadOptions;
 use super::inspect::box_of_views;
@@ -40,9 +40,9 @@ impl PlannedScene {
         source.hold(&|files| files_of_ground(files, &options))?;
         let plan = plan_scene(source.files(), &options);
         let is_refused = !plan.errors.is_empty() && !plan.is_implausible;
-        source.hold(&|_| match is_refused {
+        source.hold(&|files| match is_refused {
             true => Vec::new(),
-            false => plan.views.iter().map(|view| view.file).collect(),
+            false => plan.views.iter().map(|view| needed(files, view)).collect(),
         })?;
         Ok(Self { plan, options })
     }
@@ -167,6 +167,7 @@ pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::orientation::Needed;
     use crate::synthetic::{gable_scene, to_files};
 
     /// Photographs by the first half of their bytes, and as a whole.
@@ -182,8 +183,8 @@ mod tests {
             &self.files
         }
 
-        fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<usize>) -> Result<()> {
-            let needed = needed(&self.files);
+        fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<Needed>) -> Result<()> {
+            let needed: Vec<usize> = needed(&self.files).iter().map(|one| one.file).collect();
             for (i, file) in self.files.iter_mut().enumerate() {
                 match needed.contains(&i) {
                     true => file.fill(self.whole[i].bytes.clone()),
@@ -205,10 +206,7 @@ mod tests {
         let whole: Vec<InputFile> = (to_files(&scene).iter())
             .map(|(path, bytes)| InputFile::new(path, bytes.clone()))
             .collect();
-        let half = |file: &InputFile| {
-            let bytes = file.bytes[..file.bytes.len() / 2].to_vec();
-            InputFile::photograph(&file.path, bytes, file.length()).unwrap_or(file.clone())
-        };
+        let half = |file: &InputFile| file.half().unwrap_or(file.clone());
         let files: Vec<InputFile> = whole.iter().map(half).collect();
         let images = files.iter().filter(|file| file.lacking().is_some());
         assert_eq!(images.count(), 6);

@@ -1,8 +1,9 @@
 //! How much memory a run takes, and whether that is allowed.
 
+use super::decode::needed;
 use super::planned_view::PlannedView;
 use crate::error::Error;
-use crate::orientation::InputFile;
+use crate::orientation::{InputFile, Needed};
 use crate::raster::decoding_bytes;
 
 /// Bytes that one pixel of a view takes at the peak: colours and grey values (7), and what the
@@ -21,18 +22,15 @@ const MEMORY_BYTES: u64 = if cfg!(target_arch = "wasm32") {
     32 << 30
 };
 
-/// Peak memory of a run with these views, bytes: photographs are whole where they are views.
+/// Peak memory of a run with these views, bytes: of photographs that are views what is needed of
+/// them is in memory.
 pub(crate) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
-    let heads: u64 = files.iter().map(|f| f.first_bytes().len() as u64).sum();
-    let mut filled: Vec<usize> = views.iter().map(|v| v.file).collect();
-    filled.sort_unstable();
-    filled.dedup();
-    let filled = filled.iter().map(|&i| &files[i]);
-    let filled = filled.map(|f| f.length().saturating_sub(f.first_bytes().len() as u64));
-    let read = heads + filled.sum::<u64>();
+    let heads: u64 = files.iter().map(InputFile::head_length).sum();
+    let filled = Needed::merged(views.iter().map(|view| needed(files, view)), files);
+    let read = heads + filled.iter().map(|one| one.bytes(files)).sum::<u64>();
     let kept: u64 = views.iter().map(|v| v.pixels() * BYTES_PER_PIXEL).sum();
     let decoding = views.iter().map(|v| {
-        let chunk = decoding_bytes(&files[v.file].bytes, v.size);
+        let chunk = decoding_bytes(files[v.file].content(), v.size);
         // Without its lens, turned, or before it is reduced, a view is a second image of its size.
         let is_copied = v.distortion.is_some() || v.turn.is_some() || v.reduction > 1;
         let unreduced = v.pixels() * u64::from(v.reduction).pow(2);

@@ -106,7 +106,7 @@ fn unread<'a>(
     let read: Vec<String> = of_kind(FileKind::Image).map(|i| key(&files[i])).collect();
     let mut found: BTreeMap<&str, (UnreadImageFormat, Vec<&str>)> = BTreeMap::new();
     for i in of_kind(FileKind::UnreadImage).chain(of_kind(FileKind::Ignored)) {
-        let Some(format) = unread_image_format(&files[i].path, &files[i].bytes) else {
+        let Some(format) = unread_image_format(&files[i].path, files[i].content()) else {
             continue;
         };
         if is_short || (format.is_image && !read.contains(&key(&files[i]))) {

@@ -119,7 +119,7 @@ impl Plan {
             });
         }
         let headers = crate::execution::map(&images, |_, &i| {
-            image_header(&files[i].path, &files[i].bytes)
+            image_header(&files[i].path, files[i].content())
         });
         for (file, header) in images.into_iter().zip(headers) {
             let (header, unreadable) = match header {

@@ -1,15 +1,17 @@
 //! A large area, worked off tile by tile: the command line and the page both go this way.
 //!
-//! Only one cell is in memory at a time, beside what earlier ones found and the first bytes of all
+//! Only one cell is in memory at a time, beside what earlier ones found and the heads of all
 //! photographs: its views are read anew from the files.
 
 use std::sync::Arc;
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::division::Division;
 use super::join::{CellPart, Joined, join};
+use super::model_parts::{subset, walls_of};
 use super::tile::{Cell, Tile};
 use super::vacancy::{self, ASKED_AFTER};
 use crate::error::{Error, Result};
@@ -25,6 +27,7 @@ use crate::scene_loader::{
     LoadOptions, PlannedScene, ShownArea, files_of_settling, settled, whole_views,
 };
 use crate::texture::texture_model;
+use crate::walls::place_walls_of;
 
 /// An area, its tiles, and what those that are done have found.
 #[derive(Clone, Debug)]
@@ -129,17 +132,19 @@ impl Area {
 
     /// One model of all tiles, as files; the first error where no tile could be read. `seconds`
     /// of each tile go into `report.json` and may be empty.
-    pub fn finish(self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
+    pub fn finish(self, seconds: &[f64], form: ModelForm) -> Result<Vec<(String, Vec<u8>)>> {
         if let (true, Some(error)) = (self.parts.is_empty(), self.first_error) {
             return Err(error);
         }
-        let joined = join_cells(self.whole, self.parts);
-        Ok(model_files(&joined, &self.params, &self.reports, seconds))
+        let (joined, squares) = join_cells(self.whole, self.parts, form, &self.params);
+        let mut files = model_files(&joined, &self.params, &self.reports, seconds);
+        take_in(&mut files, squares);
+        Ok(files)
     }
 }
 
 /// CRC-32 of the version, the options, the parameters, the tiles and the files; of photographs the
-/// first bytes may stand for all.
+/// head may stand for all.
 fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params, tiles: &[Tile]) -> u32 {
     #[derive(Serialize)]
     struct Made<'a> {
@@ -155,7 +160,7 @@ fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params, tiles: &[
         params,
         tiles,
         files: (files.iter())
-            .map(|file| (&*file.path, crc32fast::hash(file.first_bytes())))
+            .map(|file| (&*file.path, crc32fast::hash(&file.head())))
             .collect(),
     };
     crc32fast::hash(&serde_json::to_vec(&made).expect("all keys are strings"))
@@ -273,14 +278,43 @@ fn in_words(buildings: usize, vacant: usize, squares: usize) -> String {
     }
 }
 
-/// Joins the parts of all cells in the order of the grid, whatever the tiles were.
-pub(super) fn join_cells(whole: Scene, mut parts: Vec<CellPart>) -> Joined {
+/// As what the model of an area is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelForm {
+    /// As one, like that of a scene.
+    Whole,
+    /// Its 3D Tiles are a file for each square, so that a viewer fetches what it shows; where there
+    /// is one square with buildings only, as one.
+    Squares,
+}
+
+/// Joins the parts of all cells in the order of the grid, whatever the tiles were; with the files
+/// of the squares where they are asked for.
+pub(super) fn join_cells(
+    whole: Scene,
+    mut parts: Vec<CellPart>,
+    form: ModelForm,
+    params: &Params,
+) -> (Joined, Vec<(String, Vec<u8>)>) {
     let place = |part: &CellPart| part.cell.core;
     parts.sort_by(|a, b| {
         let ([ax, ay, ..], [bx, by, ..]) = (place(a), place(b));
         ay.total_cmp(&by).then(ax.total_cmp(&bx))
     });
-    join(whole, &parts)
+    let joined = join(whole, &parts);
+    let squares = match form {
+        ModelForm::Squares if joined.squares_with_buildings() > 1 => {
+            joined.squares(&parts, params.texture.jpeg_quality)
+        }
+        _ => Vec::new(),
+    };
+    (joined, squares)
+}
+
+/// Adds files; those of the same name take the place of what is there.
+pub(super) fn take_in(files: &mut Vec<(String, Vec<u8>)>, added: Vec<(String, Vec<u8>)>) {
+    files.retain(|(name, _)| added.iter().all(|(other, _)| other != name));
+    files.extend(added);
 }
 
 /// The files of the model of all tiles, with a report.
@@ -333,10 +367,18 @@ fn part(
     }
     let (scene, results) = (run.scene(), run.results());
     let found = "the stages have run";
-    let model = match is_vacant {
-        true => RoofModel::default(),
-        false => cell.keep(results.roof_model().expect(found), &scene.origin),
+    let nothing = RoofModel::default();
+    let all = match is_vacant {
+        true => &nothing,
+        false => results.roof_model().expect(found),
     };
+    let kept = cell.keep(all, &scene.origin);
+    let model = subset(all, &kept);
+    let ground = results.half_planes.as_ref().map(|found| &found.ground);
+    let walls = (place_walls_of(scene, all, &kept, ground).into_iter())
+        .zip(kept.iter().zip(&model.buildings))
+        .map(|(walls, (&b, own))| walls_of(&walls, &all.buildings[b], own, &Vector3::zeros()))
+        .collect();
     let (textured, _) = texture_model(scene, &model, &params.texture);
     let (segments, lines, half_planes) = match params.method {
         Method::Lines | Method::Combined | Method::Coplanar | Method::Adjacency => (
@@ -364,6 +406,7 @@ fn part(
         half_planes,
         candidates: results.candidates(),
         model,
+        walls,
         textured,
     };
     (part, is_vacant)

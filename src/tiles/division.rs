@@ -103,7 +103,7 @@ pub struct TilePlan {
 
 impl FlightPlan {
     /// The tiles of about `tile_m` metres of the region of interest, or of what three photographs
-    /// show. Of the files their first bytes suffice. `ground` has its lowest and highest height
+    /// show. Of the files their heads suffice. `ground` has its lowest and highest height
     /// where they were measured, metres, world frame: the tiles are then those of
     /// [`BlockPlan`](super::BlockPlan).
     pub fn new(
@@ -165,13 +165,17 @@ fn rows_of(mut squares: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
 
 impl TilePlan {
     fn new(tile: &Tile, flight: &Flight, overview: &FlightOverview, files: &[InputFile]) -> Self {
-        // What whole photographs have beyond their first bytes: those of a tile are filled at once.
+        // What is read of photographs beyond their heads: those of a tile are filled at once.
         let filled_mb = |views: &[ViewWindow]| {
-            let is_read = |name: &str| views.iter().any(|view| view.view == name);
-            let read = (overview.footprints.iter()).filter(|one| is_read(&one.view));
-            let read = read.filter_map(|one| files.iter().find(|file| file.path == one.path));
-            let beyond = read.map(|file| file.length() - file.first_bytes().len() as u64);
-            beyond.sum::<u64>() >> 20
+            let read = |name: &str| -> u64 {
+                let own = views.iter().filter(|view| view.view == name);
+                own.map(|view| view.bytes).sum()
+            };
+            let filled = overview.footprints.iter().filter_map(|one| {
+                let file = files.iter().find(|file| file.path == one.path)?;
+                Some(read(&one.view).min(file.length() - file.head_length()))
+            });
+            filled.sum::<u64>() >> 20
         };
         let around = |a: [f64; 4], b: [f64; 4]| {
             [

@@ -1,25 +1,32 @@
 //! The parts of all cells as one.
 
+use std::borrow::Cow;
+use std::ops::Range;
+
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
+use super::atlases::AtlasPlaces;
 use super::fields;
-use super::model_parts::{append, middle, moved, moved_plane};
+use super::model_parts::{append, middle, moved, moved_plane, walls_of};
 use super::tile::Cell;
 use crate::evidence::Candidates;
-use crate::export::{ExportInput, export_all};
+use crate::export::{
+    ExportInput, SquareContent, TILESET_FILE, atlas_jpeg, export_all, glb_of, tileset_of_squares,
+};
 use crate::geometry::Segment2;
 use crate::ids::{HalfPlaneId, LineId, ViewId};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
-use crate::model::{Building, RoofModel, Surface};
+use crate::model::{Building, BuildingWalls, RoofModel, Surface};
 use crate::params::TextureParams;
 use crate::planes::HalfPlane;
+use crate::raster::reduced_colours;
 use crate::scene::Scene;
-use crate::texture::TexturedModel;
+use crate::texture::{FaceTexture, TexturedModel};
 
 /// Two buildings that share more of the smaller one's footprint are the same building, found in two
 /// cells.
@@ -46,6 +53,8 @@ pub struct CellPart {
     pub candidates: Candidates,
     /// The buildings that it may be responsible for.
     pub model: RoofModel,
+    /// For each of them where its walls stand.
+    pub walls: Vec<BuildingWalls>,
     /// Their textures.
     #[serde(with = "fields::textured")]
     pub textured: TexturedModel,
@@ -66,8 +75,23 @@ pub struct Joined {
     pub candidates: Candidates,
     /// All buildings.
     pub model: RoofModel,
+    /// For each of them where its walls stand.
+    pub walls: Vec<BuildingWalls>,
     /// Their textures, in one atlas.
     pub textured: TexturedModel,
+    /// The cells that have buildings in it, and which: by their part, and in the order of both.
+    chosen: Vec<Chosen>,
+}
+
+/// What is taken of a part.
+#[derive(Clone, Debug)]
+struct Chosen {
+    /// The index of the part.
+    part: usize,
+    /// Its buildings, by their indices in the part.
+    buildings: Vec<usize>,
+    /// The same, by their indices in the joined model.
+    joined: Range<usize>,
 }
 
 impl Joined {
@@ -80,7 +104,9 @@ impl Joined {
             half_planes,
             candidates,
             model,
+            walls,
             textured,
+            chosen: _,
         } = self;
         export_all(
             &ExportInput {
@@ -90,11 +116,49 @@ impl Joined {
                 half_planes,
                 candidates,
                 model,
-                walls: &[],
+                walls,
                 textured,
             },
             params,
         )
+    }
+
+    /// How many squares have buildings.
+    pub(super) fn squares_with_buildings(&self) -> usize {
+        self.chosen.len()
+    }
+
+    /// The model of each square as a file by itself (glTF, in the frame of the whole) with its own
+    /// textures, and the tileset that names them. `parts` are those that were joined.
+    pub(super) fn squares(&self, parts: &[CellPart], quality: u8) -> Vec<(String, Vec<u8>)> {
+        let mut files = Vec::new();
+        let mut squares = Vec::new();
+        for Chosen {
+            part,
+            buildings,
+            joined,
+        } in &self.chosen
+        {
+            let (part, place) = (&parts[*part], parts[*part].cell.place());
+            let faces: Vec<Vec<FaceTexture>> = (buildings.iter())
+                .map(|&b| part.textured.faces[b].clone())
+                .collect();
+            let atlas = atlas_jpeg(&part.textured, quality);
+            let textures = (&faces[..], &atlas[..]);
+            let model = glb_of(&self.scene, &self.model, joined.clone(), textures);
+            files.push((format!("square_{}_{}.glb", place[0], place[1]), model));
+            squares.push((place, joined.clone()));
+        }
+        let contents: Vec<SquareContent> = (squares.into_iter().zip(&files))
+            .map(|((place, joined), (uri, _))| SquareContent {
+                place,
+                buildings: &self.model.buildings[joined],
+                uri,
+            })
+            .collect();
+        let tileset = tileset_of_squares(&self.scene, &contents);
+        files.push((TILESET_FILE.to_owned(), tileset));
+        files
     }
 }
 
@@ -107,19 +171,32 @@ pub fn join(scene: Scene, parts: &[CellPart]) -> Joined {
         half_planes: Vec::new(),
         candidates: Candidates::default(),
         model: RoofModel::default(),
+        walls: Vec::new(),
         textured: TexturedModel {
             atlas: image::RgbImage::new(0, 0),
             faces: Vec::new(),
         },
+        chosen: Vec::new(),
     };
     let chosen = choose(parts);
     let mut covered: Vec<Vec<[f64; 4]>> = vec![Vec::new(); joined.scene.views.len()];
-    let places = join_atlases(parts, &mut joined.textured);
-    for (part, (buildings, place)) in parts.iter().zip(chosen.iter().zip(places)) {
+    let AtlasPlaces {
+        reduction, corners, ..
+    } = join_atlases(parts, &chosen, &mut joined.textured);
+    for (i, (buildings, corner)) in chosen.into_iter().zip(corners).enumerate() {
+        let part = &parts[i];
         join_segments(part, &mut joined.segments, &mut covered);
-        let ids = join_lines(part, buildings, &mut joined);
-        join_buildings(part, buildings, &ids, place, &mut joined);
+        let ids = join_lines(part, &buildings, &mut joined);
+        let first = joined.model.buildings.len();
+        join_buildings(part, &buildings, &ids, (reduction, corner), &mut joined);
         join_candidates(part, &mut joined);
+        if !buildings.is_empty() {
+            joined.chosen.push(Chosen {
+                part: i,
+                buildings,
+                joined: first..joined.model.buildings.len(),
+            });
+        }
     }
     joined
 }
@@ -186,18 +263,23 @@ fn area(ring: &[[f64; 2]]) -> f64 {
         .sum()
 }
 
-/// Puts the atlases below each other; the place of each: first row.
-fn join_atlases(parts: &[CellPart], to: &mut TexturedModel) -> Vec<u32> {
-    let sizes = || parts.iter().map(|p| p.textured.atlas.dimensions());
-    let width = sizes().map(|s| s.0).max().unwrap_or(0);
-    let height = sizes().map(|s| s.1).sum();
-    to.atlas = image::RgbImage::new(width.max(1), std::cmp::max(height, 1));
-    let mut top = 0;
-    let mut places = Vec::new();
-    for part in parts {
-        image::imageops::replace(&mut to.atlas, &part.textured.atlas, 0, i64::from(top));
-        places.push(top);
-        top += part.textured.atlas.height();
+/// Puts the atlases of the parts that have buildings into one.
+fn join_atlases(parts: &[CellPart], chosen: &[Vec<usize>], to: &mut TexturedModel) -> AtlasPlaces {
+    let size = |(part, buildings): (&CellPart, &Vec<usize>)| match buildings.is_empty() {
+        true => [0, 0],
+        false => part.textured.atlas.dimensions().into(),
+    };
+    let sizes: Vec<[u32; 2]> = parts.iter().zip(chosen).map(size).collect();
+    let places = AtlasPlaces::of(&sizes);
+    to.atlas = image::RgbImage::new(places.size[0], places.size[1]);
+    for ((part, _), [x, y]) in
+        (parts.iter().zip(&sizes).zip(&places.corners)).filter(|((_, size), _)| **size != [0, 0])
+    {
+        let atlas = match places.reduction {
+            1 => Cow::Borrowed(&part.textured.atlas),
+            reduction => Cow::Owned(reduced_colours(&part.textured.atlas, reduction)),
+        };
+        image::imageops::replace(&mut to.atlas, &*atlas, i64::from(*x), i64::from(*y));
     }
     places
 }
@@ -297,7 +379,7 @@ fn join_buildings(
     part: &CellPart,
     buildings: &[usize],
     ids: &NewIds,
-    top: u32,
+    (reduction, [left, top]): (u32, [u32; 2]),
     joined: &mut Joined,
 ) {
     let mut model = moved(part.model.clone(), &(joined.scene.origin - part.origin));
@@ -317,12 +399,18 @@ fn join_buildings(
         part.textured.atlas.dimensions(),
         joined.textured.atlas.dimensions(),
     );
+    let old = [old.0, old.1].map(|side| side as f32 / reduction as f32);
     let place = |uv: &mut [f32; 2]| {
-        uv[0] *= old.0 as f32 / new.0 as f32;
-        uv[1] = (top as f32 + uv[1] * old.1 as f32) / new.1 as f32;
+        uv[0] = (left as f32 + uv[0] * old[0]) / new.0 as f32;
+        uv[1] = (top as f32 + uv[1] * old[1]) / new.1 as f32;
     };
     for &b in buildings {
         append(&mut joined.model, &model, b);
+        let joint = joined.model.buildings.last().expect("one was appended");
+        let (own, by) = (&part.model.buildings[b], joined.scene.origin - part.origin);
+        let walls = part.walls.get(b);
+        let walls = walls.map(|walls| walls_of(walls, own, joint, &by));
+        joined.walls.push(walls.unwrap_or_default());
         let mut faces = part.textured.faces[b].clone();
         for face in &mut faces {
             face.uv.iter_mut().flatten().for_each(place);
@@ -356,6 +444,12 @@ mod tests {
                 .collect()
         };
         let faces = model.buildings.iter().map(uv).collect();
+        // Walls below the rim: a solid like that of the building.
+        let walls = |b: &Building| BuildingWalls {
+            solid: Some(b.solid.clone()),
+            ..BuildingWalls::default()
+        };
+        let walls = model.buildings.iter().map(walls).collect();
         let textured = TexturedModel {
             atlas: image::RgbImage::new(8, 4),
             faces,
@@ -369,6 +463,7 @@ mod tests {
             half_planes: Vec::new(),
             candidates: Candidates::default(),
             model,
+            walls,
             textured,
         }
     }
@@ -393,8 +488,12 @@ mod tests {
             warnings: Vec::new(),
             survey: Survey::default(),
         };
-        let joined = join(scene, &[west, east]);
+        let parts = [west, east];
+        let joined = join(scene, &parts);
         assert_eq!(joined.model.buildings.len(), 3);
+        for (building, walls) in joined.model.buildings.iter().zip(&joined.walls) {
+            assert_eq!(walls.solid.as_ref(), Some(&building.solid));
+        }
         assert_eq!(check_invariants(&joined.model), []);
         let mut middles: Vec<i64> = joined
             .model
@@ -437,5 +536,22 @@ mod tests {
             .map(|faces| faces[0].uv[0][0][1])
             .collect();
         assert_eq!(v, [0.25, 0.75, 0.75]);
+        // Each square is a file whose buildings have the numbers of the whole.
+        let files = joined.squares(&parts, 80);
+        let names: Vec<&str> = files.iter().map(|(name, _)| &**name).collect();
+        assert_eq!(names, ["square_0_0.glb", "square_1_0.glb", "tileset.json"]);
+        let numbers = |bytes: &[u8]| {
+            let text = String::from_utf8_lossy(bytes);
+            let named = |i: &usize| text.contains(&format!("\"building\":{i}"));
+            (0..3).filter(named).collect::<Vec<usize>>()
+        };
+        assert_eq!(numbers(&files[0].1), [0]);
+        assert_eq!(numbers(&files[1].1), [1, 2]);
+        let tileset: serde_json::Value = serde_json::from_slice(&files[2].1).unwrap();
+        let children = tileset["root"]["children"].as_array().unwrap();
+        let uris: Vec<&str> = (children.iter())
+            .map(|child| child["content"]["uri"].as_str().unwrap())
+            .collect();
+        assert_eq!(uris, names[..2]);
     }
 }

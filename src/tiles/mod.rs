@@ -4,6 +4,7 @@
 //! division     which tiles and cells of an area are worked off; the plan that the page shows
 //! tile         cells on a grid of the world, with a margin around them; tiles of cells
 //! model_parts  buildings of a model in another model and frame
+//! atlases      where the atlases of all cells stand in one
 //! join         one model: each building once, ids renumbered, whole images, one atlas
 //! area         one cell after the other
 //! vacancy      may a cell hold a building, or does it end early?
@@ -21,6 +22,7 @@
 //! Invariant: an area has the same model whatever the size of its tiles.
 
 mod area;
+mod atlases;
 mod division;
 mod fields;
 #[cfg(test)]
@@ -33,7 +35,7 @@ mod plan;
 mod tile;
 mod vacancy;
 
-pub use area::{Area, TileReport, refuse_corrections};
+pub use area::{Area, ModelForm, TileReport, refuse_corrections};
 pub use division::{FlightPlan, TilePlan};
 pub use join::{CellPart, Joined, join};
 pub use plan::{BlockPlan, BlockSource, HeadStamp, InputStamp, PlannedCell, PlannedTile};

@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector3};
 
 use crate::geometry::Plane;
 use crate::ids::{BuildingId, FacetId};
-use crate::model::{Building, RoofModel, Surface};
+use crate::model::{Building, BuildingWalls, RoofModel, Solid, Surface};
 
 /// The middle of a building's box in plan.
 pub(super) fn middle(building: &Building) -> Point2<f64> {
@@ -37,16 +37,39 @@ pub(super) fn append(to: &mut RoofModel, from: &RoofModel, building: usize) {
         facet.building = id;
         to.facets.push(facet);
     }
-    for face in &mut copy.solid.faces {
+    renumber(&mut copy.solid, &old, &copy.facets);
+    to.buildings.push(copy);
+}
+
+/// Has the roofs of a building's solid refer to other numbers of the same facets.
+fn renumber(solid: &mut Solid, old: &[FacetId], new: &[FacetId]) {
+    for face in &mut solid.faces {
         if let Surface::Roof(facet) = &mut face.surface {
-            let place = old
-                .iter()
-                .position(|f| f == facet)
+            let place = (old.iter().position(|f| f == facet))
                 .expect("a solid's roofs are facets of its building");
-            *facet = copy.facets[place];
+            *facet = new[place];
         }
     }
-    to.buildings.push(copy);
+}
+
+/// The walls of a building as those of the same building in another model, in a frame whose origin
+/// lies `by` further.
+pub(super) fn walls_of(
+    walls: &BuildingWalls,
+    from: &Building,
+    to: &Building,
+    by: &Vector3<f64>,
+) -> BuildingWalls {
+    let mut walls = walls.clone();
+    for wall in &mut walls.walls {
+        wall.side.p0 -= by;
+        wall.side.p1 -= by;
+    }
+    if let Some(solid) = &mut walls.solid {
+        renumber(solid, &from.facets, &to.facets);
+        solid.vertices.iter_mut().for_each(|p| *p -= by);
+    }
+    walls
 }
 
 /// Moves a model to a frame whose origin lies `by` further.

@@ -22,7 +22,7 @@ use crate::error::{Error, Result};
 const MAGIC: &[u8; 15] = b"ridgeline part\n";
 
 /// Layout of the bytes: to be raised whenever a type in [`CellPart`] changes.
-const LAYOUT: u32 = 2;
+const LAYOUT: u32 = 3;
 
 /// Bytes before the outcome.
 const HEADER: usize = MAGIC.len() + 4 * 4 + 8;

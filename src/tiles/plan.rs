@@ -2,7 +2,7 @@
 //! one part each, and one joins them.
 //!
 //! The plan names every input file with its length and sum, of large photographs that of their
-//! first bytes, too. Each step compares all that it reads with these, so that a part made from
+//! head, too. Each step compares all that it reads with these, so that a part made from
 //! anything else is refused by the file's name; a part names the plan by the sum of the plan's
 //! file.
 //!
@@ -12,9 +12,12 @@
 use std::collections::BTreeMap;
 use std::io::{self, Read};
 
+use image::ImageFormat;
 use serde::{Deserialize, Serialize};
 
-use super::area::{divided, join_cells, model_files, refuse_corrections, work_off};
+use super::area::{
+    ModelForm, divided, join_cells, model_files, refuse_corrections, take_in, work_off,
+};
 use super::division::Division;
 use super::join::Joined;
 use super::part_file::{PartKey, TileOutcome};
@@ -22,8 +25,9 @@ use super::tile::{Cell, Tile};
 use crate::error::{Error, Result};
 use crate::execution::Listener;
 use crate::export::city_json_seq;
-use crate::orientation::{FileSource, InputFile};
+use crate::orientation::{BLOCK_BYTES, FileSource, InputFile, Needed};
 use crate::params::Params;
+use crate::raster::image_format;
 use crate::scene_loader::{LoadOptions, ViewWindow, files_of_ground, region_windows, whole_views};
 
 /// Cells that are planned at the same time. Assumption: enough for the cores of a machine, and few
@@ -54,12 +58,16 @@ pub struct InputStamp {
     /// CRC-32 of its bytes. It tells accidents, not forgers; every change within 32 neighbouring
     /// bits is found, of others all but one in four thousand million.
     pub crc32: u32,
-    /// Of a photograph the first bytes, where steps that need no pixel of it read no more.
+    /// Of a photograph the head, where steps that need no pixel of it read no more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadStamp>,
+    /// Of a photograph that is read in blocks: CRC-32 of each block of 256 kB, eight hexadecimal
+    /// digits each.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub blocks: String,
 }
 
-/// The first bytes of a photograph as they were when the plan was made.
+/// The head of a photograph as it was when the plan was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HeadStamp {
@@ -75,33 +83,40 @@ impl InputStamp {
         Self::new(file, file.bytes.len() as u64, crc32fast::hash(&file.bytes))
     }
 
-    /// The stamp of a photograph of which the first bytes are in memory; `whole` reads all of them.
+    /// The stamp of a photograph of which the head is in memory; `whole` reads all of them.
     pub fn of_stream(file: &InputFile, mut whole: impl Read) -> io::Result<Self> {
         let (mut sum, mut length) = (crc32fast::Hasher::new(), 0);
-        let mut chunk = vec![0; 1 << 18];
+        let mut blocks = String::new();
+        let mut block = Vec::new();
         loop {
-            match whole.read(&mut chunk) {
-                Ok(0) => return Ok(Self::new(file, length, sum.finalize())),
-                Ok(read) => {
-                    sum.update(&chunk[..read]);
-                    length += read as u64;
-                }
-                Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
-                Err(e) => return Err(e),
+            block.clear();
+            whole.by_ref().take(BLOCK_BYTES).read_to_end(&mut block)?;
+            if block.is_empty() {
+                break;
+            }
+            sum.update(&block);
+            length += block.len() as u64;
+            if image_format(&file.bytes) == Some(ImageFormat::Tiff) {
+                blocks += &format!("{:08x}", crc32fast::hash(&block));
             }
         }
+        Ok(Self {
+            blocks,
+            ..Self::new(file, length, sum.finalize())
+        })
     }
 
     fn new(file: &InputFile, bytes: u64, crc32: u32) -> Self {
         let head = HeadStamp {
-            bytes: file.first_bytes().len() as u64,
-            crc32: crc32fast::hash(file.first_bytes()),
+            bytes: file.head_length(),
+            crc32: crc32fast::hash(&file.head()),
         };
         Self {
             file: file.path.clone(),
             bytes,
             crc32,
             head: (head.bytes < bytes).then_some(head),
+            blocks: String::new(),
         }
     }
 
@@ -111,7 +126,22 @@ impl InputStamp {
             let bytes = &file.bytes;
             return (self.bytes, self.crc32) == (bytes.len() as u64, crc32fast::hash(bytes));
         }
-        Self::new(file, file.length(), self.crc32) == *self
+        let found = Self {
+            blocks: self.blocks.clone(),
+            ..Self::new(file, file.length(), self.crc32)
+        };
+        found == *self && (file.filled_ranges()).all(|(place, bytes)| self.has(place.start, bytes))
+    }
+
+    /// Are these blocks, from a place on, as they were?
+    fn has(&self, from: u64, blocks: &[u8]) -> bool {
+        let first = (from / BLOCK_BYTES) as usize;
+        let blocks = blocks.chunks(BLOCK_BYTES as usize).enumerate();
+        blocks.into_iter().all(|(i, block)| {
+            let at = 8 * (first + i);
+            let stated = self.blocks.get(at..at + 8);
+            stated == Some(&*format!("{:08x}", crc32fast::hash(block)))
+        })
     }
 
     fn refuse(&self, problem: &str) -> Error {
@@ -139,7 +169,7 @@ impl FileSource for Compared<'_> {
         self.source.files()
     }
 
-    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<usize>) -> Result<()> {
+    fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<Needed>) -> Result<()> {
         self.source.hold(needed)?;
         let held = self.inputs.iter().zip(self.source.files());
         let mut filled = held.filter(|(_, file)| file.is_filled());
@@ -295,7 +325,7 @@ impl BlockPlan {
 
     /// Works off a tile: its part as a file, and the outcome in words. `text` is the plan's file;
     /// the files are those of [`Self::unchanged`], and photographs that have changed beyond their
-    /// first bytes are refused when they become whole.
+    /// heads are refused when they become whole.
     pub fn work_off(
         &self,
         text: &[u8],
@@ -355,15 +385,17 @@ impl BlockPlan {
                     .to_owned(),
             });
         }
-        let joined = join_cells(whole, parts);
+        let (joined, squares) = join_cells(whole, parts, ModelForm::Squares, &self.params);
         let mut files = model_files(&joined, &self.params, &reports, &[]);
+        take_in(&mut files, squares);
         let Joined {
             scene,
             model,
+            walls,
             textured,
             ..
         } = &joined;
-        let features = city_json_seq(scene, model, textured);
+        let features = city_json_seq(scene, (model, walls), textured);
         files.push(("model.city.jsonl".to_owned(), features));
         Ok(files)
     }
@@ -414,7 +446,7 @@ fn planned(
             let of_cell =
                 |_: usize, cell: &Cell| files_of_ground(files, &options_of(cell, options));
             let needed = crate::execution::map(some, of_cell);
-            needed.into_iter().flatten().collect()
+            Needed::merged(needed.into_iter().flatten(), files)
         })?;
         let files = source.files();
         let of_cell = |_: usize, cell: &Cell| planned_cell(files, options, cell);

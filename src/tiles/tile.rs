@@ -8,7 +8,7 @@
 use nalgebra::{Point2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::model_parts::{middle, subset};
+use super::model_parts::middle;
 use crate::error::{Error, Result};
 use crate::math::{larger, smaller};
 use crate::model::{Building, RoofModel};
@@ -114,13 +114,18 @@ impl Cell {
         p.x >= x0 && p.x < x1 && p.y >= y0 && p.y < y1
     }
 
-    /// The buildings that this cell may be responsible for. `origin` is that of the model's frame.
-    pub fn keep(&self, model: &RoofModel, origin: &Vector3<f64>) -> RoofModel {
+    /// The buildings that this cell may be responsible for, by their indices. `origin` is that of
+    /// the model's frame.
+    pub fn keep(&self, model: &RoofModel, origin: &Vector3<f64>) -> Vec<usize> {
         let near = |b: &Building| self.depth(&(middle(b) + origin.xy())) > -SLACK_M;
-        let chosen: Vec<usize> = (0..model.buildings.len())
+        (0..model.buildings.len())
             .filter(|&b| near(&model.buildings[b]))
-            .collect();
-        subset(model, &chosen)
+            .collect()
+    }
+
+    /// Its column and row on the grid.
+    pub(super) fn place(&self) -> [i64; 2] {
+        [0, 1].map(|i| ((self.region[i] + MARGIN_M) / CELL_M).round() as i64)
     }
 }
 
@@ -128,7 +133,7 @@ impl Cell {
 mod tests {
     use super::*;
     use crate::tiles::fixture::house;
-    use crate::tiles::model_parts::append;
+    use crate::tiles::model_parts::{append, subset};
 
     #[test]
     fn only_buildings_near_the_core_are_kept() {
@@ -138,7 +143,7 @@ mod tests {
         for x in [80.0, 20.0, 62.0] {
             append(&mut model, &house([x + 1000.0, 25.0]), 0);
         }
-        let kept = cell.keep(&model, &origin);
+        let kept = subset(&model, &cell.keep(&model, &origin));
         let middles: Vec<f64> = kept
             .buildings
             .iter()

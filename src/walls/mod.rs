@@ -56,8 +56,20 @@ pub fn place_walls(
     model: &RoofModel,
     ground: Option<&Ground>,
 ) -> Vec<BuildingWalls> {
+    let all: Vec<usize> = (0..model.buildings.len()).collect();
+    place_walls_of(scene, model, &all, ground)
+}
+
+/// The walls of some buildings, by their indices, among the roofs of all.
+pub fn place_walls_of(
+    scene: &Scene,
+    model: &RoofModel,
+    buildings: &[usize],
+    ground: Option<&Ground>,
+) -> Vec<BuildingWalls> {
     let occluders = Occluders::new(&model.facets);
-    crate::execution::map(&model.buildings, |_, building| {
+    crate::execution::map(buildings, |_, &building| {
+        let building = &model.buildings[building];
         let members: Vec<(FacetId, &Facet)> = (building.facets.iter())
             .map(|f| (*f, &model.facets[f.index()]))
             .collect();

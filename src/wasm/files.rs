@@ -1,20 +1,41 @@
 //! The session's photographs, whole only while a call needs their pixels.
 
+use std::ops::Range;
+
+use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
-use super::convert::named_error;
+use super::convert::{named_error, to_js};
 use super::session::{Session, load_options};
-use crate::orientation::InputFile;
+use crate::orientation::{InputFile, Needed, PhotographHead};
+use crate::raster::HeaderNeeds;
 use crate::scene_loader::{files_of_ground, files_of_views};
 
 #[wasm_bindgen]
 impl Session {
-    /// Adds a photograph by its first bytes, `whole` being its length; false where they do not
-    /// suffice to plan with.
-    #[wasm_bindgen(js_name = addHead)]
-    pub fn add_head(&mut self, path: &str, bytes: Vec<u8>, whole: f64) -> bool {
-        let file = InputFile::photograph(path, bytes, whole as u64);
-        file.map(|file| self.put(file)).is_ok()
+    /// Adds a photograph by its head, of a file of `whole` bytes, range by range: begins it without
+    /// `bytes`, and goes on with those of the range that was answered. Answers the next range, true
+    /// when the photograph is added, and false where the file is to be added whole.
+    #[wasm_bindgen(js_name = addHead, unchecked_return_type = "[from: number, to: number] | boolean")]
+    pub fn add_head(
+        &mut self,
+        path: &str,
+        whole: f64,
+        bytes: Option<Vec<u8>>,
+    ) -> Result<JsValue, JsValue> {
+        let begun = self.head.take().filter(|_| bytes.is_some());
+        let mut head = begun.unwrap_or_else(|| PhotographHead::new(path, whole as u64));
+        if let (HeaderNeeds::Range(range), Some(bytes)) = (head.needs(), bytes)
+            && !head.add(range, &bytes)
+        {
+            return Ok(false.into());
+        }
+        if let HeaderNeeds::Range(range) = head.needs() {
+            self.head = Some(head);
+            return to_js(&[range.start as f64, range.end as f64]);
+        }
+        let file = InputFile::photograph(head).map(|file| self.put(file));
+        Ok(file.is_some().into())
     }
 
     /// Gives a photograph its whole bytes.
@@ -23,49 +44,81 @@ impl Session {
         let mut added = self.files.iter_mut().filter(|file| file.path == path);
         match added.next().is_some_and(|file| file.fill(bytes)) {
             true => Ok(()),
-            false => Err(named_error("RangeError", &format!("{path} is not lacking"))),
+            false => Err(named_error(
+                "RangeError",
+                &format!("{path}: the file is whole, or has changed since its head was read"),
+            )),
         }
     }
 
-    /// Leaves the first bytes of all photographs that were filled.
+    /// Gives a photograph ranges of its bytes beside its head: `places` are first and last place of
+    /// each, `bytes` those of all, one after the other.
+    #[wasm_bindgen(js_name = fillRanges)]
+    pub fn fill_ranges(&mut self, path: &str, places: &[f64], bytes: &[u8]) -> Result<(), JsValue> {
+        let ranges: Vec<Range<u64>> = (places.chunks_exact(2))
+            .map(|ends| ends[0] as u64..ends[1] as u64)
+            .collect();
+        let mut added = self.files.iter_mut().filter(|file| file.path == path);
+        match (added.next()).is_some_and(|file| file.fill_ranges(&ranges, bytes)) {
+            true => Ok(()),
+            false => Err(named_error(
+                "RangeError",
+                &format!("{path}: the file is whole, or has become shorter"),
+            )),
+        }
+    }
+
+    /// Leaves the heads of all photographs that were filled.
     #[wasm_bindgen(js_name = emptyFiles)]
     pub fn empty_files(&mut self) {
         self.files.iter_mut().for_each(InputFile::empty);
     }
 
-    /// The paths of all photographs that are not whole.
-    #[wasm_bindgen(js_name = lackingFiles)]
-    pub fn lacking_files(&self) -> Vec<String> {
-        let all: Vec<usize> = (0..self.files.len()).collect();
-        self.lacking(&all)
+    /// All photographs that are not whole, to be filled.
+    #[wasm_bindgen(js_name = lackingFiles, unchecked_return_type = "LackingFile[]")]
+    pub fn lacking_files(&self) -> Result<JsValue, JsValue> {
+        self.lacking(&Needed::all(&self.files))
     }
 
-    /// The paths of the photographs that `load` needs first, to measure the ground: to be filled.
-    #[wasm_bindgen(js_name = groundFilesOfLoad)]
+    /// The photographs that `load` needs first, to measure the ground: to be filled.
+    #[wasm_bindgen(js_name = groundFilesOfLoad, unchecked_return_type = "LackingFile[]")]
     pub fn ground_files_of_load(
         &self,
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
-    ) -> Result<Vec<String>, JsValue> {
+    ) -> Result<JsValue, JsValue> {
         let needed = files_of_ground(&self.files, &load_options(&options)?);
-        Ok(self.lacking(&needed))
+        self.lacking(&needed)
     }
 
-    /// The paths of the photographs that `load` makes views of, once the others are filled.
-    #[wasm_bindgen(js_name = viewFilesOfLoad)]
+    /// The photographs that `load` makes views of, once the others are filled.
+    #[wasm_bindgen(js_name = viewFilesOfLoad, unchecked_return_type = "LackingFile[]")]
     pub fn view_files_of_load(
         &self,
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
-    ) -> Result<Vec<String>, JsValue> {
+    ) -> Result<JsValue, JsValue> {
         let needed = files_of_views(&self.files, &load_options(&options)?);
-        Ok(self.lacking(&needed))
+        self.lacking(&needed)
     }
 }
 
+/// A photograph that is not filled with what a call needs of it.
+#[derive(Serialize, tsify::Tsify)]
+struct LackingFile<'a> {
+    path: &'a str,
+    /// First and last place of each range that is needed, one after the other; null for the whole.
+    #[tsify(type = "number[] | null")]
+    places: Option<Vec<f64>>,
+}
+
 impl Session {
-    /// The paths of those among these files that are not whole.
-    pub(crate) fn lacking(&self, of: &[usize]) -> Vec<String> {
-        let files = of.iter().map(|&i| &self.files[i]);
-        let lacking = files.filter(|file| file.lacking().is_some());
-        lacking.map(|file| file.path.clone()).collect()
+    /// Those of which what is needed is not in memory.
+    pub(crate) fn lacking(&self, needed: &[Needed]) -> Result<JsValue, JsValue> {
+        let lacking = needed.iter().filter(|one| !one.is_in(&self.files));
+        let ends = |range: &Range<u64>| [range.start as f64, range.end as f64];
+        let lacking = lacking.map(|one| LackingFile {
+            path: &self.files[one.file].path,
+            places: (one.ranges.as_ref()).map(|ranges| ranges.iter().flat_map(ends).collect()),
+        });
+        to_js(&lacking.collect::<Vec<_>>())
     }
 }

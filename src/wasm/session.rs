@@ -6,7 +6,7 @@ use wasm_bindgen::prelude::*;
 
 use super::convert::{ViewInfo, from_js, input_error, listener_of, named_error, to_js};
 use crate::execution::MergedShards;
-use crate::orientation::InputFile;
+use crate::orientation::{InputFile, PhotographHead};
 use crate::params::Params;
 use crate::pipeline::{PackedView, Run, Stage};
 use crate::planes::PointsOfInterest;
@@ -19,8 +19,10 @@ use crate::tiles::Area;
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Session {
-    /// Of large photographs the first bytes only, until their pixels are needed.
+    /// Of large photographs the head only, until their pixels are needed.
     pub(crate) files: Vec<InputFile>,
+    /// The head of a photograph that is being added.
+    pub(crate) head: Option<PhotographHead>,
     /// The project that was added last.
     project: Option<Project>,
     pub(crate) params: Params,

@@ -1,18 +1,16 @@
 //! Large areas in the page: the plan of a flight, tile after tile in one worker, then one model.
 
-use std::collections::BTreeSet;
-
 use js_sys::Function;
 use wasm_bindgen::prelude::*;
 
 use super::convert::{from_js, input_error, listener_of, named_error, to_js};
 use super::session::{Session, load_options};
 use crate::execution::MergedShards;
-use crate::orientation::InputFile;
+use crate::orientation::{InputFile, Needed};
 use crate::scene_loader::{
     LoadOptions, files_of_ground, files_of_views, ground_files, ground_heights,
 };
-use crate::tiles::{Area, FlightPlan, TileReport};
+use crate::tiles::{Area, FlightPlan, ModelForm, TileReport};
 
 /// What a tile came to, and its model (glTF) where it has one.
 #[wasm_bindgen]
@@ -54,14 +52,14 @@ impl Session {
         to_js(&plan.map_err(|e| input_error(&e))?)
     }
 
-    /// The paths of the photographs in which `groundHeights` measures: to be filled.
-    #[wasm_bindgen(js_name = groundFiles)]
+    /// The photographs in which `groundHeights` measures: to be filled.
+    #[wasm_bindgen(js_name = groundFiles, unchecked_return_type = "LackingFile[]")]
     pub fn ground_files(
         &self,
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
-    ) -> Result<Vec<String>, JsValue> {
+    ) -> Result<JsValue, JsValue> {
         let needed = ground_files(&self.files, &load_options(&options)?);
-        Ok(self.lacking(&needed))
+        self.lacking(&needed)
     }
 
     /// Lowest and highest ground as the photographs in the middle of a flight show it, metres; null
@@ -96,15 +94,15 @@ impl Session {
         to_js(&area.tiles().iter().map(|t| t.core).collect::<Vec<_>>())
     }
 
-    /// The paths of the photographs that a tile needs first, to measure the ground: to be filled.
-    #[wasm_bindgen(js_name = groundFilesOfTile)]
-    pub fn ground_files_of_tile(&self, index: usize) -> Result<Vec<String>, JsValue> {
+    /// The photographs that a tile needs first, to measure the ground: to be filled.
+    #[wasm_bindgen(js_name = groundFilesOfTile, unchecked_return_type = "LackingFile[]")]
+    pub fn ground_files_of_tile(&self, index: usize) -> Result<JsValue, JsValue> {
         self.lacking_of_tile(index, files_of_ground)
     }
 
-    /// The paths of the photographs that a tile makes views of, once the others are filled.
-    #[wasm_bindgen(js_name = viewFilesOfTile)]
-    pub fn view_files_of_tile(&self, index: usize) -> Result<Vec<String>, JsValue> {
+    /// The photographs that a tile makes views of, once the others are filled.
+    #[wasm_bindgen(js_name = viewFilesOfTile, unchecked_return_type = "LackingFile[]")]
+    pub fn view_files_of_tile(&self, index: usize) -> Result<JsValue, JsValue> {
         self.lacking_of_tile(index, files_of_views)
     }
 
@@ -141,21 +139,22 @@ impl Session {
     #[wasm_bindgen(js_name = joinTiles)]
     pub fn join_tiles(&mut self) -> Result<(), JsValue> {
         let area = self.area.take().ok_or_else(not_planned)?;
-        self.outputs = Some(area.finish(&[]).map_err(|e| input_error(&e))?);
+        self.outputs = Some(
+            area.finish(&[], ModelForm::Whole)
+                .map_err(|e| input_error(&e))?,
+        );
         Ok(())
     }
 
-    /// The paths of the photographs that are not whole among those that the squares of a tile need.
+    /// The photographs that are not whole among those that the squares of a tile need.
     fn lacking_of_tile(
         &self,
         index: usize,
-        needed: fn(&[InputFile], &LoadOptions) -> Vec<usize>,
-    ) -> Result<Vec<String>, JsValue> {
+        needed: fn(&[InputFile], &LoadOptions) -> Vec<Needed>,
+    ) -> Result<JsValue, JsValue> {
         let cells = self.planned()?.options_of(index).ok_or_else(no_tile)?;
         let needed = cells.iter().flat_map(|cell| needed(&self.files, cell));
-        let needed: BTreeSet<usize> = needed.collect();
-        let needed: Vec<usize> = needed.into_iter().collect();
-        Ok(self.lacking(&needed))
+        self.lacking(&Needed::merged(needed, &self.files))
     }
 
     fn planned(&self) -> Result<&Area, JsValue> {

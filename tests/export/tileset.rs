@@ -2,6 +2,7 @@
 
 use libm::{cos, sin};
 use nalgebra::{Matrix4, Point3, Vector3};
+use ridgeline::export::{SquareContent, tileset_of_squares};
 use ridgeline::model::RoofModel;
 use ridgeline::orientation::Anchor;
 use ridgeline::scene::Scene;
@@ -137,3 +138,103 @@ const PROJ: [([f64; 3], [f64; 3]); 4] = [
         [4162366.9690, 590300.5153, 4780473.2818],
     ),
 ];
+
+/// A tile of a tree: its transform from its own frame to that of the root's parent.
+fn visit(tile: &Value, above: &Matrix4<f64>, see: &mut dyn FnMut(&Value, &Matrix4<f64>)) {
+    let own = match tile["transform"].as_array() {
+        Some(numbers) => Matrix4::from_iterator(numbers.iter().map(|n| n.as_f64().unwrap())),
+        None => Matrix4::identity(),
+    };
+    let placed = above * own;
+    see(tile, &placed);
+    for child in tile["children"].as_array().into_iter().flatten() {
+        visit(child, &placed, see);
+    }
+}
+
+/// Middle and half the sides of a tile's box.
+fn box_of(tile: &Value) -> (Point3<f64>, Vector3<f64>) {
+    let numbers = tile["boundingVolume"]["box"].as_array().unwrap();
+    let n = |i: usize| numbers[i].as_f64().unwrap();
+    (
+        Point3::new(n(0), n(1), n(2)),
+        Vector3::new(n(3), n(7), n(11)),
+    )
+}
+
+fn is_in(p: &Point3<f64>, (middle, half): &(Point3<f64>, Vector3<f64>)) -> bool {
+    (p - middle)
+        .iter()
+        .zip(half)
+        .all(|(off, half)| off.abs() <= half + 1e-6)
+}
+
+#[test]
+fn squares_of_a_flight_stand_in_a_tree_and_at_their_places_on_the_earth() {
+    let (_, model, _) = planted_models().remove(0);
+    // Houses along a flight of 4 km, one square far beside it.
+    let places = [[0, 0], [1, 0], [1, 1], [-3, 2], [20, 1], [63, -2], [64, -2]];
+    let moved = |[column, row]: [i64; 2]| {
+        let mut building = model.buildings[0].clone();
+        let by = Vector3::new(60.0 * column as f64, 60.0 * row as f64, row as f64);
+        building.solid.vertices.iter_mut().for_each(|p| *p += by);
+        building
+    };
+    let houses = places.map(|place| [moved(place)]);
+    let uris = places.map(|[column, row]| format!("square_{column}_{row}.glb"));
+    let squares: Vec<SquareContent> = (places.into_iter().zip(&houses).zip(&uris))
+        .map(|((place, buildings), uri)| SquareContent {
+            place,
+            buildings,
+            uri,
+        })
+        .collect();
+    for epsg in [Some(25832), None] {
+        let mut scene = scene();
+        scene.survey.epsg = epsg;
+        let tileset: Value = serde_json::from_slice(&tileset_of_squares(&scene, &squares)).unwrap();
+        let root = &tileset["root"];
+        assert_eq!(root["refine"], "REPLACE");
+        assert_eq!(tileset["geometricError"], root["geometricError"]);
+        let mut found = Vec::new();
+        visit(root, &Matrix4::identity(), &mut |tile, placed| {
+            let error = tile["geometricError"].as_f64().unwrap();
+            let own = box_of(tile);
+            let children = tile["children"].as_array();
+            assert_eq!(children.is_none(), tile.get("content").is_some());
+            for child in children.into_iter().flatten() {
+                assert!(children.unwrap().len() > 1);
+                assert!(child["geometricError"].as_f64().unwrap() < error);
+                let by = match child["transform"].as_array() {
+                    Some(n) => Matrix4::from_iterator(n.iter().map(|n| n.as_f64().unwrap())),
+                    None => Matrix4::identity(),
+                };
+                let (middle, half) = box_of(child);
+                for i in 0..8 {
+                    let sign = |bit: usize| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+                    let signs = Vector3::new(sign(0), sign(1), sign(2));
+                    let corner = by.transform_point(&(middle + half.component_mul(&signs)));
+                    assert!(is_in(&corner, &own), "{corner} {own:?}");
+                }
+            }
+            if let Some(uri) = tile["content"]["uri"].as_str() {
+                assert_eq!(error, 0.0);
+                let i = uris.iter().position(|own| own == uri).unwrap();
+                found.push(i);
+                for p in &houses[i][0].solid.vertices {
+                    assert!(is_in(p, &own), "{p}");
+                    let there = placed.transform_point(p);
+                    let expected = match epsg {
+                        Some(_) => scene.survey.geocentric(&(p + scene.origin)).unwrap(),
+                        None => *p,
+                    };
+                    assert!((there - expected).norm() < 1e-3, "{there} {expected}");
+                }
+            }
+        });
+        found.sort_unstable();
+        assert_eq!(found, [0, 1, 2, 3, 4, 5, 6]);
+    }
+    let empty: Value = serde_json::from_slice(&tileset_of_squares(&scene(), &[])).unwrap();
+    assert!(empty["root"].get("content").is_none() && empty["root"].get("children").is_none());
+}

@@ -12,6 +12,7 @@ use image::codecs::png::PngDecoder;
 use image::error::{LimitError, LimitErrorKind};
 use image::{ImageDecoder, ImageError, ImageFormat, ImageResult, Limits};
 
+use super::excerpt::Excerpt;
 use super::jpeg::{self, Jpeg};
 use super::samples::Samples;
 use super::tiff::{Bands, Tiff, is_tiff};
@@ -53,9 +54,10 @@ pub fn image_format(bytes: &[u8]) -> Option<ImageFormat> {
 }
 
 /// Reads the size from the header alone. `file` is for messages.
-pub fn image_header(file: &str, bytes: &[u8]) -> Result<ImageHeader> {
+pub fn image_header<'a>(file: &str, bytes: impl Into<Excerpt<'a>>) -> Result<ImageHeader> {
+    let bytes = bytes.into();
     refusing_panics(file, || {
-        if is_tiff(bytes) {
+        if is_tiff(bytes.start()) {
             let tiff = open_tiff(file, bytes)?;
             let (width, height) = tiff.size();
             return Ok(ImageHeader {
@@ -77,21 +79,22 @@ pub fn image_header(file: &str, bytes: &[u8]) -> Result<ImageHeader> {
 }
 
 /// Decodes an image. `file` is for messages.
-pub fn load_image(file: &str, bytes: &[u8]) -> Result<Photograph> {
-    let samples = decode(file, bytes)?;
+pub fn load_image<'a>(file: &str, bytes: impl Into<Excerpt<'a>>) -> Result<Photograph> {
+    let samples = decode(file, bytes.into())?;
     let brightest = samples.brightest();
     Ok(samples.photograph(brightest))
 }
 
 /// The samples as they are stored.
-pub(super) fn decode(file: &str, bytes: &[u8]) -> Result<Samples> {
+pub(super) fn decode(file: &str, bytes: Excerpt) -> Result<Samples> {
     refusing_panics(file, || {
-        if is_tiff(bytes) {
+        if is_tiff(bytes.start()) {
             let tiff = open_tiff(file, bytes)?;
             let (width, height) = tiff.size();
             return tiff.window([0, 0, width, height]);
         }
-        if image_format(bytes) == Some(ImageFormat::Jpeg) && !jpeg::is_complete(bytes) {
+        let is_jpeg = image_format(bytes.start()) == Some(ImageFormat::Jpeg);
+        if is_jpeg && !jpeg::is_complete(bytes.start()) {
             // The decoder would fill the missing part with grey.
             return Err(unreadable(file, "the JPEG is cut off before its end"));
         }
@@ -108,7 +111,7 @@ pub(super) fn decode(file: &str, bytes: &[u8]) -> Result<Samples> {
 }
 
 /// The tags of a TIFF, unless it is a camera's raw file or claims an impossible size.
-pub(super) fn open_tiff<'a>(file: &'a str, bytes: &'a [u8]) -> Result<Tiff<'a>> {
+pub(super) fn open_tiff<'a>(file: &'a str, bytes: Excerpt<'a>) -> Result<Tiff<'a>> {
     refuse_unread(file, bytes)?;
     let tiff = Tiff::open(file, bytes)?;
     check_size(file, bytes, tiff.size())?;
@@ -125,7 +128,7 @@ pub(super) fn refusing_panics<T>(file: &str, read: impl FnOnce() -> Result<T>) -
     })
 }
 
-fn refuse_unread(file: &str, bytes: &[u8]) -> Result<()> {
+fn refuse_unread(file: &str, bytes: Excerpt) -> Result<()> {
     match unread_image_format(file, bytes) {
         None => Ok(()),
         Some(format) => Err(Error::File {
@@ -172,16 +175,17 @@ fn zeroed_buffer(total_bytes: u64) -> ImageResult<Vec<u8>> {
     Ok(vec![0; total_bytes as usize])
 }
 
-fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<Box<dyn SampleSource + 'a>> {
-    refuse_unread(file, bytes)?;
+fn decoder<'a>(file: &str, excerpt: Excerpt<'a>) -> Result<Box<dyn SampleSource + 'a>> {
+    refuse_unread(file, excerpt)?;
+    let bytes = excerpt.start();
     let format = image_format(bytes)
         .ok_or_else(|| unreadable(file, "its content is neither JPEG nor PNG nor TIFF"))?;
     let decoder = decoder_of(format, bytes).map_err(|e| unreadable(file, &e.to_string()))?;
-    check_size(file, bytes, decoder.size())?;
+    check_size(file, excerpt, decoder.size())?;
     Ok(decoder)
 }
 
-fn check_size(file: &str, bytes: &[u8], (width, height): (u32, u32)) -> Result<()> {
+fn check_size(file: &str, bytes: Excerpt, (width, height): (u32, u32)) -> Result<()> {
     let pixels = u64::from(width) * u64::from(height);
     if pixels > MAX_PIXELS || pixels == 0 {
         return Err(Error::File {
@@ -193,10 +197,10 @@ fn check_size(file: &str, bytes: &[u8], (width, height): (u32, u32)) -> Result<(
             ),
         });
     }
-    if pixels / jpeg::MOST_PIXELS_PER_BYTE as u64 > bytes.len() as u64 {
+    if pixels / jpeg::MOST_PIXELS_PER_BYTE as u64 > bytes.length() {
         let problem = format!(
             "{} bytes cannot hold {width} x {height} pixels",
-            bytes.len()
+            bytes.length()
         );
         return Err(unreadable(file, &problem));
     }

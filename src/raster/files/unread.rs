@@ -1,5 +1,6 @@
 //! Images that cannot be read, by their content: what they are and what to do.
 
+use super::excerpt::Excerpt;
 use super::tiff::{Directory, is_tiff, tags};
 
 /// A format that is known by name only.
@@ -41,9 +42,14 @@ const VIDEO: UnreadImageFormat = UnreadImageFormat {
 };
 
 /// What a file is that holds an image in a format that is not read; `None` for all others.
-pub fn unread_image_format(path: &str, bytes: &[u8]) -> Option<UnreadImageFormat> {
+pub fn unread_image_format<'a>(
+    path: &str,
+    bytes: impl Into<Excerpt<'a>>,
+) -> Option<UnreadImageFormat> {
+    let excerpt = bytes.into();
+    let bytes = excerpt.start();
     if is_tiff(bytes) {
-        return raw_in_tiff(bytes);
+        return raw_in_tiff(excerpt);
     }
     if let Some(format) = by_boxes(bytes) {
         return Some(format);
@@ -139,10 +145,11 @@ fn by_boxes(bytes: &[u8]) -> Option<UnreadImageFormat> {
 }
 
 /// Raw files that are TIFFs: the first image in them is a thumbnail, or a sensor's pattern.
-fn raw_in_tiff(bytes: &[u8]) -> Option<UnreadImageFormat> {
+fn raw_in_tiff(excerpt: Excerpt) -> Option<UnreadImageFormat> {
     const PATTERN_OF_A_SENSOR: u64 = 32803;
     const LINEAR_RAW: u64 = 34892;
     const MOST: usize = 8;
+    let bytes = excerpt.start();
     if bytes.get(8..10) == Some(b"CR") {
         return Some(CANON);
     }
@@ -156,7 +163,7 @@ fn raw_in_tiff(bytes: &[u8]) -> Option<UnreadImageFormat> {
         let meaning = directory.number(tags::PHOTOMETRIC);
         meaning.is_some_and(|m| [PATTERN_OF_A_SENSOR, LINEAR_RAW].contains(&m))
     };
-    for directory in Directory::chain(bytes).take(MOST) {
+    for directory in Directory::chain(excerpt).take(MOST) {
         if directory.raw(tags::DNG_VERSION).is_some() {
             return Some(DNG);
         }

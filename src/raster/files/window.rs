@@ -4,15 +4,21 @@
 //! PNG are decoded whole and cropped at once. With 16 bits every strip or tile of a TIFF is read
 //! once for the brightest value, which scales all windows of an image alike.
 
+use super::excerpt::Excerpt;
 use super::load::{decode, open_tiff, refusing_panics};
 use super::tiff::{Tiff, is_tiff};
 use crate::error::Result;
 use crate::raster::photograph::{Photograph, PixelWindow};
 
 /// Decodes a window of an image, inside which it must lie. `file` is for messages.
-pub fn load_window(file: &str, bytes: &[u8], window: PixelWindow) -> Result<Photograph> {
+pub fn load_window<'a>(
+    file: &str,
+    bytes: impl Into<Excerpt<'a>>,
+    window: PixelWindow,
+) -> Result<Photograph> {
+    let bytes = bytes.into();
     refusing_panics(file, || {
-        if is_tiff(bytes) {
+        if is_tiff(bytes.start()) {
             let tiff = open_tiff(file, bytes)?;
             let brightest = tiff.brightest()?;
             return Ok(tiff.window(window)?.photograph(brightest));
@@ -25,9 +31,10 @@ pub fn load_window(file: &str, bytes: &[u8], window: PixelWindow) -> Result<Phot
 
 /// Bytes that decoding a window takes beyond the window itself: the whole image, or one strip or
 /// tile.
-pub fn decoding_bytes(bytes: &[u8], [width, height]: [u32; 2]) -> u64 {
+pub fn decoding_bytes<'a>(bytes: impl Into<Excerpt<'a>>, [width, height]: [u32; 2]) -> u64 {
     const BYTES_PER_PIXEL: u64 = 6;
-    match is_tiff(bytes).then(|| Tiff::open("", bytes)) {
+    let bytes = bytes.into();
+    match is_tiff(bytes.start()).then(|| Tiff::open("", bytes)) {
         Some(Ok(tiff)) => tiff.chunk_bytes(),
         _ => u64::from(width) * u64::from(height) * BYTES_PER_PIXEL,
     }

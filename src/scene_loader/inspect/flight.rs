@@ -99,7 +99,7 @@ pub struct Flight<'a> {
 }
 
 impl<'a> Flight<'a> {
-    /// Of the files their first bytes suffice. `ground` has the heights of the ground where they
+    /// Of the files their heads suffice. `ground` has the heights of the ground where they
     /// were measured, metres, world frame of the input.
     pub fn new(
         files: &'a [InputFile],
@@ -192,10 +192,7 @@ impl<'a> Flight<'a> {
         if let Some(error) = memory::check_memory(bytes, &views, self.memory_mb) {
             return Err(error);
         }
-        let window = |view: &PlannedView| ViewWindow {
-            view: view.name.clone(),
-            window: (view.part).unwrap_or([0, 0, view.whole.width, view.whole.height]),
-        };
+        let window = |view: &PlannedView| ViewWindow::of(self.files, view);
         // A part of a megabyte counts as a whole one.
         Ok((views.iter().map(window).collect(), (bytes >> 20) + 1))
     }

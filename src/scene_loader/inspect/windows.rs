@@ -3,9 +3,11 @@
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
+use super::super::decode::needed;
 use super::super::ground::{ground_heights, pixel_in_the_middle, plan_scene, unreduced_plan};
 use super::super::input::LoadOptions;
 use super::super::plan::Plan;
+use super::super::planned_view::PlannedView;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::math::{larger, smaller};
@@ -30,6 +32,19 @@ pub struct ViewWindow {
     pub view: String,
     /// Column, row, width and height, pixels of the whole image without its lens, reduced.
     pub window: [u32; 4],
+    /// Bytes that are read of its photograph beyond the head.
+    pub bytes: u64,
+}
+
+impl ViewWindow {
+    pub(super) fn of(files: &[InputFile], planned: &PlannedView) -> Self {
+        let whole = &planned.whole;
+        Self {
+            view: planned.name.clone(),
+            window: (planned.part).unwrap_or([0, 0, whole.width, whole.height]),
+            bytes: needed(files, planned).bytes(files),
+        }
+    }
 }
 
 /// The views of the region of interest, and the memory that a run on them takes at its peak,
@@ -42,10 +57,7 @@ pub fn region_windows(
     if let (Some(error), false) = (plan.errors.into_iter().next(), plan.is_implausible) {
         return Err(error);
     }
-    let views = plan.views.iter().map(|planned| ViewWindow {
-        view: planned.name.clone(),
-        window: (planned.part).unwrap_or([0, 0, planned.whole.width, planned.whole.height]),
-    });
+    let views = (plan.views.iter()).map(|planned| ViewWindow::of(files, planned));
     // A part of a megabyte counts as a whole one.
     Ok((views.collect(), (plan.peak_bytes >> 20) + 1))
 }

@@ -44,7 +44,7 @@ fn kind(view: &PlannedView) -> CameraKind {
 /// Bits of a pixel of the compressed photograph.
 fn bits_per_pixel(file: &InputFile, [width, height]: [u32; 2]) -> Option<f64> {
     let pixels = f64::from(width) * f64::from(height);
-    let is_jpeg = image_format(file.first_bytes()) == Some(ImageFormat::Jpeg);
+    let is_jpeg = image_format(&file.bytes) == Some(ImageFormat::Jpeg);
     (is_jpeg && pixels > 0.0).then(|| 8.0 * file.length() as f64 / pixels)
 }
 

@@ -39,9 +39,9 @@ const MIRRORED: [u8; 4] = [2, 4, 5, 7];
 /// Decodes a photograph and finds its features, in the pixels as they are stored.
 fn read(file: &InputFile, options: &OrientOptions) -> Result<Photo, NotJoined> {
     let unreadable = |problem: String| NotJoined::Unreadable { problem };
-    let decoded = load_image(&file.path, &file.bytes);
+    let decoded = load_image(&file.path, file.content());
     let photograph = decoded.map_err(|e| unreadable(e.to_string()))?;
-    let is_mirrored = image_header(&file.path, &file.bytes)
+    let is_mirrored = image_header(&file.path, file.content())
         .is_ok_and(|header| MIRRORED.contains(&header.orientation));
     if is_mirrored {
         return Err(unreadable(

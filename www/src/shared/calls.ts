@@ -72,6 +72,7 @@ type Inner =
   | "addFile"
   | "addHead"
   | "fillFile"
+  | "fillRanges"
   | "emptyFiles"
   | "lackingFiles"
   | "groundFiles"

@@ -25,16 +25,16 @@ export function workerCalls(
   return {
     setFiles: (all) => files.replace(all),
     inspect: (options) =>
-      files.withWhole([() => session.groundFilesOfLoad(options)], () => session.inspect(options)),
+      files.withFilled([() => session.groundFilesOfLoad(options)], () => session.inspect(options)),
     load: (options) =>
-      files.withWhole(
+      files.withFilled(
         [() => session.groundFilesOfLoad(options), () => session.viewFilesOfLoad(options)],
         () => session.load(options),
       ),
     groundHeights: (options) =>
-      files.withWhole([() => session.groundFiles(options)], () => session.groundHeights(options)),
+      files.withFilled([() => session.groundFiles(options)], () => session.groundHeights(options)),
     exportProject: (options, shown) =>
-      files.withWhole([() => session.lackingFiles()], () => session.exportProject(options, shown)),
+      files.withFilled([() => session.lackingFiles()], () => session.exportProject(options, shown)),
     defaultParams: () => asTree(defaults()),
     setParams: (params) => session.setParams(params as unknown as Params),
     image: async (view) => {
@@ -50,7 +50,7 @@ export function workerCalls(
       session.runShard(stage, map, index, of, throttled(stage, onProgress)),
     runTile: (stage, index, of) => {
       const onTileProgress = throttled(stage, onProgress);
-      return files.withWhole(
+      return files.withFilled(
         [() => session.groundFilesOfTile(index), () => session.viewFilesOfTile(index)],
         () => session.runTile(index, (fraction) => onTileProgress((index + fraction) / of)),
       );

@@ -1,9 +1,7 @@
-/** The project's files in the worker: of large photographs the first bytes, until a call needs their pixels. */
+/** The project's files in the worker: of large photographs the head, until a call needs their pixels. */
 import type { InputFile } from "../shared/calls";
+import type { LackingFile } from "../shared/records";
 import type { CoreSession } from "./coreSession";
-
-/** The headers of most photographs fit into the first of these; what has its own behind all of them is read whole. */
-const HEAD_BYTES = [64 * 1024, 512 * 1024, 2 * 1024 * 1024];
 
 export class ProjectFiles {
   readonly #session: CoreSession;
@@ -24,15 +22,12 @@ export class ProjectFiles {
     }
   }
 
-  /** Calls the core while it holds the photographs that `needed` names step by step, and takes them from it again. */
-  async withWhole<T>(needed: readonly (() => string[])[], call: () => T): Promise<T> {
+  /** Calls the core while it holds what `needed` names of photographs step by step, and takes it from it again. */
+  async withFilled<T>(needed: readonly (() => LackingFile[])[], call: () => T): Promise<T> {
     try {
       for (const step of needed) {
-        for (const path of step()) {
-          const blob = this.#blobs.get(path);
-          if (blob !== undefined) {
-            this.#session.fillFile(path, new Uint8Array(await readBlob(path, blob)));
-          }
+        for (const lacking of step()) {
+          await this.#fill(lacking);
         }
       }
       return call();
@@ -41,26 +36,30 @@ export class ProjectFiles {
     }
   }
 
-  async #addHead(path: string, blob: Blob): Promise<boolean> {
-    for (const size of HEAD_BYTES) {
-      if (blob.size <= size) {
-        return false;
-      }
-      const head = new Uint8Array(await readBlob(path, blob.slice(0, size)));
-      if (!isPhotograph(head)) {
-        return false;
-      }
-      if (this.#session.addHead(path, head, blob.size)) {
-        return true;
-      }
+  async #fill({ path, places }: LackingFile): Promise<void> {
+    const blob = this.#blobs.get(path);
+    if (blob === undefined) {
+      return;
     }
-    return false;
+    if (places === null) {
+      this.#session.fillFile(path, new Uint8Array(await readBlob(path, blob)));
+      return;
+    }
+    // A blob of slices is read at once.
+    const starts = places.filter((_, i) => i % 2 === 0);
+    const slices = new Blob(starts.map((start, i) => blob.slice(start, places[2 * i + 1])));
+    this.#session.fillRanges(path, new Float64Array(places), new Uint8Array(await readBlob(path, slices)));
   }
-}
 
-/** A JPEG or a PNG, by its first bytes: others say what they are anywhere. */
-function isPhotograph([first, second]: Uint8Array): boolean {
-  return (first === 0xff && second === 0xd8) || (first === 0x89 && second === 0x50);
+  /** Adds a photograph by the ranges of it that the core asks for; false where it wants the whole file. */
+  async #addHead(path: string, blob: Blob): Promise<boolean> {
+    let next = this.#session.addHead(path, blob.size);
+    while (typeof next !== "boolean") {
+      const range = new Uint8Array(await readBlob(path, blob.slice(...next)));
+      next = this.#session.addHead(path, blob.size, range);
+    }
+    return next;
+  }
 }
 
 /** A file may have vanished since it was dropped: the browser's own message does not name it. */

@@ -19,6 +19,7 @@ import type {
   FlightPlan,
   GroundPicture,
   HalfPlane,
+  LackingFile,
   LineRecord,
   MatchRecord,
   Params,
@@ -525,7 +526,7 @@ export class Session implements CoreSession {
 
   planFlight(): FlightPlan {
     const area: [number, number, number, number] = [0, 0, 50, 50];
-    const views = this.#images().map((path) => ({ view: path, window: area }));
+    const views = this.#images().map((path) => ({ view: path, window: area, bytes: 0 }));
     return {
       overview: {
         heights: [0, 0],
@@ -545,7 +546,7 @@ export class Session implements CoreSession {
     };
   }
 
-  groundFiles(): string[] {
+  groundFiles(): LackingFile[] {
     return [];
   }
 
@@ -553,23 +554,23 @@ export class Session implements CoreSession {
     return null;
   }
 
-  groundFilesOfLoad(): string[] {
+  groundFilesOfLoad(): LackingFile[] {
     return [];
   }
 
-  viewFilesOfLoad(): string[] {
+  viewFilesOfLoad(): LackingFile[] {
     return [];
   }
 
-  groundFilesOfTile(): string[] {
+  groundFilesOfTile(): LackingFile[] {
     return [];
   }
 
-  viewFilesOfTile(): string[] {
+  viewFilesOfTile(): LackingFile[] {
     return [];
   }
 
-  lackingFiles(): string[] {
+  lackingFiles(): LackingFile[] {
     return [];
   }
 
@@ -578,6 +579,8 @@ export class Session implements CoreSession {
   }
 
   fillFile(): void {}
+
+  fillRanges(): void {}
 
   emptyFiles(): void {}
 

@@ -1,7 +1,9 @@
 //! The strips and tiles that touch a window, to samples.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
+use super::super::excerpt::Excerpt;
 use super::super::jpeg::JpegPart;
 use super::super::samples::{Samples, Values};
 use super::compression::{Compression, decompress, decompress_jpeg};
@@ -12,7 +14,7 @@ use crate::raster::photograph::PixelWindow;
 /// A TIFF whose tags have been read.
 pub(crate) struct Tiff<'a> {
     file: &'a str,
-    bytes: &'a [u8],
+    bytes: Excerpt<'a>,
     layout: Layout,
 }
 
@@ -24,7 +26,7 @@ pub(super) struct Chunk<'a> {
 
 impl<'a> Tiff<'a> {
     /// Reads the tags. `file` is for messages.
-    pub(crate) fn open(file: &'a str, bytes: &'a [u8]) -> Result<Self> {
+    pub(crate) fn open(file: &'a str, bytes: Excerpt<'a>) -> Result<Self> {
         let layout = Layout::read(file, bytes)?;
         Ok(Self {
             file,
@@ -34,7 +36,7 @@ impl<'a> Tiff<'a> {
     }
 
     /// What the tags say is known already.
-    pub(super) fn of_layout(file: &'a str, bytes: &'a [u8], layout: Layout) -> Self {
+    pub(super) fn of_layout(file: &'a str, bytes: Excerpt<'a>, layout: Layout) -> Self {
         Self {
             file,
             bytes,
@@ -128,39 +130,72 @@ impl<'a> Tiff<'a> {
         let per_pixel = layout.samples_of_a_chunk();
         let used = layout.used.min(per_pixel);
         let mut samples = Vec::new();
-        for band in 0..layout.planes() {
-            for j in row / chunk_h..(row + height).div_ceil(chunk_h) {
-                for i in column / chunk_w..(column + width).div_ceil(chunk_w) {
-                    let (left, top) = (i * chunk_w, j * chunk_h);
-                    // Tiles are whole, the last strip is not.
-                    let rows = match layout.is_tiled {
-                        true => chunk_h,
-                        false => chunk_h.min(layout.size.1 - top),
-                    };
-                    let index = band as u64 * layout.chunks_of_a_plane()
-                        + u64::from(j) * u64::from(layout.across())
-                        + u64::from(i);
-                    // What is not stored at all is black.
-                    let Some(chunk) = self.chunk(index as usize, rows)? else {
-                        continue;
-                    };
-                    let from = column.max(left);
-                    let to = (column + width).min(left.saturating_add(chunk_w));
-                    let bottom = (row + height).min(top.saturating_add(rows));
-                    for y in row.max(top)..bottom {
-                        let start = (y - top) as usize * chunk.bytes_of_a_row;
-                        let end = start + (to - left) as usize * per_pixel * T::BYTES;
-                        let stored = chunk.data.get(start..end).unwrap_or_default();
-                        self.unpack(stored, &mut samples);
-                        let pixels = samples.chunks_exact(per_pixel);
-                        for (x, pixel) in (from..to).zip(pixels.skip((from - left) as usize)) {
-                            show([x, y], band, &pixel[..used]);
-                        }
-                    }
+        for (band, [i, j], index) in self.touched([column, row, width, height]) {
+            let (left, top) = (i * chunk_w, j * chunk_h);
+            // Tiles are whole, the last strip is not.
+            let rows = match layout.is_tiled {
+                true => chunk_h,
+                false => chunk_h.min(layout.size.1 - top),
+            };
+            // What is not stored at all is black.
+            let Some(chunk) = self.chunk(index, rows)? else {
+                continue;
+            };
+            let from = column.max(left);
+            let to = (column + width).min(left.saturating_add(chunk_w));
+            let bottom = (row + height).min(top.saturating_add(rows));
+            for y in row.max(top)..bottom {
+                let start = (y - top) as usize * chunk.bytes_of_a_row;
+                let end = start + (to - left) as usize * per_pixel * T::BYTES;
+                let stored = chunk.data.get(start..end).unwrap_or_default();
+                self.unpack(stored, &mut samples);
+                let pixels = samples.chunks_exact(per_pixel);
+                for (x, pixel) in (from..to).zip(pixels.skip((from - left) as usize)) {
+                    show([x, y], band, &pixel[..used]);
                 }
             }
         }
         Ok(())
+    }
+
+    /// The strips or tiles that touch a window: the first band, column and row among them, index.
+    fn touched(
+        &self,
+        [column, row, width, height]: PixelWindow,
+    ) -> impl Iterator<Item = (usize, [u32; 2], usize)> {
+        let layout = &self.layout;
+        let (chunk_w, chunk_h) = layout.chunk;
+        let columns = column / chunk_w..(column + width).div_ceil(chunk_w);
+        let rows = row / chunk_h..(row + height).div_ceil(chunk_h);
+        let of_band = move |band: usize| {
+            let columns = columns.clone();
+            rows.clone()
+                .flat_map(move |j| columns.clone().map(move |i| (band, [i, j])))
+        };
+        (0..layout.planes())
+            .flat_map(of_band)
+            .map(|(band, [i, j])| {
+                let index = band as u64 * layout.chunks_of_a_plane()
+                    + u64::from(j) * u64::from(layout.across())
+                    + u64::from(i);
+                (band, [i, j], index as usize)
+            })
+    }
+
+    /// The ranges of the file that decoding a window reads; `None` for all.
+    pub(crate) fn ranges(&self, window: PixelWindow) -> Option<Vec<Range<u64>>> {
+        if self.layout.bits == 16 {
+            return None;
+        }
+        let places = self.touched(window).map(|(_, _, index)| {
+            let (offset, count) = self.layout.places.get(index).copied().unwrap_or_default();
+            match (offset, count) {
+                (0, _) | (_, 0) => Some(0..0),
+                (_, u64::MAX) => None,
+                (offset, count) => Some(self.bytes.within(offset, count)),
+            }
+        });
+        places.collect()
     }
 
     /// The samples of a row from its start, without the predictor.
@@ -198,12 +233,8 @@ impl<'a> Tiff<'a> {
                 advice: "copy or convert it again".to_owned(),
             }
         };
-        let place = |at: u64| {
-            usize::try_from(at)
-                .unwrap_or(usize::MAX)
-                .min(self.bytes.len())
-        };
-        let data = &self.bytes[place(offset)..place(offset.saturating_add(count))];
+        let data = self.bytes.get(self.bytes.within(offset, count));
+        let data = data.ok_or_else(|| damaged("it was not read".to_owned()))?;
         let pixels = (layout.chunk.0 as usize, rows as usize);
         let samples = layout.samples_of_a_chunk();
         if layout.compression == Compression::Jpeg {

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::super::excerpt::Excerpt;
+
 /// The tags that are looked at.
 pub(crate) mod tags {
     pub(crate) const NEW_SUBFILE_TYPE: u16 = 254;
@@ -50,7 +52,7 @@ struct Form {
 
 /// One directory: an image, or a reduced copy, a mask, a page.
 pub(crate) struct Directory<'a> {
-    bytes: &'a [u8],
+    bytes: Excerpt<'a>,
     form: Form,
     entries: Vec<Entry>,
     /// Where the next one stands; 0 for none.
@@ -62,7 +64,7 @@ struct Entry {
     /// Bytes of one value; 0 for kinds that hold no whole numbers.
     size: usize,
     /// Where the values stand.
-    place: Range<usize>,
+    place: Range<u64>,
 }
 
 /// Most directories that are followed: overviews and masks come by the dozen at most.
@@ -70,14 +72,14 @@ const MOST_DIRECTORIES: usize = 64;
 
 impl<'a> Directory<'a> {
     /// The directories of the main chain, up to the first that is damaged.
-    pub(crate) fn chain(bytes: &'a [u8]) -> impl Iterator<Item = Self> {
+    pub(crate) fn chain(bytes: Excerpt<'a>) -> impl Iterator<Item = Self> {
         let form = Form {
-            big_endian: bytes.starts_with(b"MM"),
+            big_endian: bytes.start().starts_with(b"MM"),
             big_offsets: bytes.get(2..4).is_some_and(|b| b.contains(&43)),
         };
         let at = match form.big_offsets {
-            true => form.number(bytes, 8..16),
-            false => form.number(bytes, 4..8),
+            true => form.number_at(bytes, 8..16),
+            false => form.number_at(bytes, 4..8),
         };
         let first = at.and_then(|at| Self::at(bytes, form, at));
         std::iter::successors(first, move |directory| {
@@ -93,18 +95,19 @@ impl<'a> Directory<'a> {
         (offsets.into_iter().take(count)).filter_map(|at| Self::at(self.bytes, self.form, at))
     }
 
-    fn at(bytes: &'a [u8], form: Form, at: u64) -> Option<Self> {
-        let at = usize::try_from(at).ok().filter(|&at| at > 0)?;
+    fn at(bytes: Excerpt<'a>, form: Form, at: u64) -> Option<Self> {
+        let at = Some(at).filter(|&at| at > 0)?;
         let (count_size, entry_size, value_size) = if form.big_offsets {
             (8, 20, 8)
         } else {
             (2, 12, 4)
         };
         let start = at.checked_add(count_size)?;
-        let count = usize::try_from(form.number(bytes, at..start)?).ok()?;
+        let count = form.number_at(bytes, at..start)?;
         let end = start.checked_add(count.checked_mul(entry_size)?)?;
-        let entries = bytes.get(start..end)?.chunks_exact(entry_size);
-        let read = |i: usize, entry: &[u8]| {
+        let entries = bytes.get(start..end)?.chunks_exact(entry_size as usize);
+        let entry_starts = (start..end).step_by(entry_size as usize);
+        let read = |entry_start: u64, entry: &[u8]| {
             let tag = u16::try_from(form.number(entry, 0..2)?).ok()?;
             let (size, bytes_each) = match form.number(entry, 2..4)? {
                 1 | 6 | 7 => (1, 1),
@@ -116,12 +119,12 @@ impl<'a> Directory<'a> {
                 9 | 11 => (0, 4),
                 _ => (0, 8),
             };
-            let values = entry_size - value_size..entry_size;
-            let count = usize::try_from(form.number(entry, 4..values.start)?).ok()?;
+            let values = entry.len() - value_size as usize..entry.len();
+            let count = form.number(entry, 4..values.start)?;
             let length = count.checked_mul(bytes_each)?;
             let from = match length <= value_size {
-                true => start + i * entry_size + values.start,
-                false => usize::try_from(form.number(entry, values)?).ok()?,
+                true => entry_start + values.start as u64,
+                false => form.number(entry, values)?,
             };
             let place = from..from.checked_add(length)?;
             Some(Entry { tag, size, place })
@@ -130,12 +133,11 @@ impl<'a> Directory<'a> {
             bytes,
             form,
             // An entry of a private tag may be damaged: only its own values are missing then.
-            entries: entries
-                .enumerate()
-                .filter_map(|(i, e)| read(i, e))
+            entries: (entry_starts.zip(entries))
+                .filter_map(|(start, entry)| read(start, entry))
                 .collect(),
             next: form
-                .number(bytes, end..end.checked_add(value_size)?)
+                .number_at(bytes, end..end.checked_add(value_size)?)
                 .unwrap_or(0),
         })
     }
@@ -173,6 +175,11 @@ impl<'a> Directory<'a> {
 }
 
 impl Form {
+    fn number_at(self, bytes: Excerpt, place: Range<u64>) -> Option<u64> {
+        let value = bytes.get(place)?;
+        self.number(value, 0..value.len())
+    }
+
     fn number(self, bytes: &[u8], place: Range<usize>) -> Option<u64> {
         let value = bytes.get(place)?;
         let join = |sum: u64, byte: &u8| sum << 8 | u64::from(*byte);

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::super::excerpt::Excerpt;
 use super::compression::Compression;
 use super::directory::{Directory, tags};
 use crate::error::{Error, Result};
@@ -63,7 +64,7 @@ const MOST_SAMPLES: u64 = 4_000_000_000;
 
 impl Layout {
     /// Of the first image of full resolution. `file` is for messages.
-    pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Self> {
+    pub(super) fn read(file: &str, bytes: Excerpt) -> Result<Self> {
         let refuse = |problem: &str, advice: &str| Error::File {
             file: file.to_owned(),
             problem: problem.to_owned(),

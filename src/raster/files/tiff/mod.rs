@@ -21,4 +21,5 @@ mod numbers;
 pub(super) use chunks::Tiff;
 pub(crate) use directory::{Directory, is_tiff, tags};
 pub use layout::Bands;
+pub(super) use numbers::is_placed_band;
 pub(crate) use numbers::{NumberRaster, is_height_raster};

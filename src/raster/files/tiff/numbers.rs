@@ -4,6 +4,7 @@
 //! Predictor 3 (Adobe's technical note on TIFF of 2005) stands the bytes of a row side by side, all
 //! most significant ones first, and stores their differences.
 
+use super::super::excerpt::Excerpt;
 use super::chunks::Tiff;
 use super::compression::Compression;
 use super::directory::{Directory, is_tiff, tags};
@@ -40,7 +41,7 @@ enum Kind {
 
 impl<'a> NumberRaster<'a> {
     /// Reads the first image of full resolution. `file` is for messages.
-    pub(crate) fn read(file: &'a str, bytes: &'a [u8]) -> Result<Self> {
+    pub(crate) fn read(file: &'a str, bytes: Excerpt<'a>) -> Result<Self> {
         let refuse = |problem: &str, advice: &str| Error::File {
             file: file.to_owned(),
             problem: problem.to_owned(),
@@ -104,17 +105,25 @@ impl<'a> NumberRaster<'a> {
 }
 
 /// Does a file hold one band of numbers with sign or fraction, and state where it lies?
-pub(crate) fn is_height_raster(bytes: &[u8]) -> bool {
-    let directory = is_tiff(bytes)
+pub(crate) fn is_height_raster<'a>(bytes: impl Into<Excerpt<'a>>) -> bool {
+    let is_signed_or_fraction =
+        |directory: Directory| matches!(directory.number(tags::SAMPLE_FORMAT), Some(2 | 3));
+    placed_band(bytes.into()).is_some_and(is_signed_or_fraction)
+}
+
+/// Does a file hold one band, and state where it lies? It may be heights then, if it is said to be.
+pub(crate) fn is_placed_band(bytes: Excerpt) -> bool {
+    placed_band(bytes).is_some()
+}
+
+fn placed_band(bytes: Excerpt) -> Option<Directory> {
+    let directory = is_tiff(bytes.start())
         .then(|| Directory::chain(bytes).find(is_full))
         .flatten();
-    directory.is_some_and(|directory| {
-        let number = |tag: u16| directory.number(tag).unwrap_or(1);
+    directory.filter(|directory| {
         let is_placed = directory.raw(tags::MODEL_TIEPOINT).is_some()
             || directory.raw(tags::MODEL_TRANSFORMATION).is_some();
-        is_placed
-            && number(tags::SAMPLES_PER_PIXEL) == 1
-            && matches!(number(tags::SAMPLE_FORMAT), 2 | 3)
+        is_placed && directory.number(tags::SAMPLES_PER_PIXEL).unwrap_or(1) == 1
     })
 }
 
