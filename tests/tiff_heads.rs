@@ -9,7 +9,9 @@ mod planted;
 use planted::{Form, Place, forms, offset_of, written};
 use ridgeline::orientation::{FileSource, InputFile, Needed, PhotographHead, detect};
 use ridgeline::raster::{HeaderNeeds, image_header, load_image};
-use ridgeline::scene_loader::{LoadOptions, PlannedScene, load_scene};
+use ridgeline::scene_loader::{
+    LoadOptions, PlannedScene, files_of_ground, files_of_views, load_scene,
+};
 use ridgeline::synthetic::{gable_scene, to_files};
 
 const SIZE: [u32; 2] = [700, 500];
@@ -143,18 +145,7 @@ impl FileSource for Sparing {
     fn hold(&mut self, needed: &dyn Fn(&[InputFile]) -> Vec<Needed>) -> ridgeline::Result<()> {
         let needed = needed(&self.files);
         self.files.iter_mut().for_each(InputFile::empty);
-        for Needed { file, ranges } in &needed {
-            let (whole, file) = (&self.whole[*file].bytes, &mut self.files[*file]);
-            match ranges {
-                None => assert!(file.fill(whole.clone())),
-                Some(ranges) => {
-                    let parts = ranges
-                        .iter()
-                        .map(|r| &whole[r.start as usize..r.end as usize]);
-                    assert!(file.fill_ranges(ranges, &parts.collect::<Vec<_>>().concat()));
-                }
-            }
-        }
+        fill(&mut self.files, &self.whole, &needed);
         assert!(needed.iter().all(|one| one.is_in(&self.files)));
         let held = self.files.iter().map(|file| file.bytes.len()).sum();
         self.most = self.most.max(held);
@@ -162,11 +153,26 @@ impl FileSource for Sparing {
     }
 }
 
-#[test]
-fn a_region_is_decoded_from_the_strips_and_tiles_that_show_it() {
+/// Gives files what is needed of them.
+fn fill(files: &mut [InputFile], whole: &[InputFile], needed: &[Needed]) {
+    for Needed { file, ranges } in needed {
+        let (whole, file) = (&whole[*file].bytes, &mut files[*file]);
+        match ranges {
+            None => assert!(file.fill(whole.clone())),
+            Some(ranges) => {
+                let part = |r: &std::ops::Range<u64>| &whole[r.start as usize..r.end as usize];
+                let parts: Vec<&[u8]> = ranges.iter().map(part).collect();
+                assert!(file.fill_ranges(ranges, &parts.concat()));
+            }
+        }
+    }
+}
+
+/// A rendered house with TIFFs of all forms as photographs, and the height of the ground.
+fn house() -> (Vec<InputFile>, ridgeline::Scene, f64) {
     let (scene, truth) = gable_scene(1000);
     let mut forms = forms().into_iter().rev().cycle();
-    let whole: Vec<InputFile> = (to_files(&scene).into_iter())
+    let files = (to_files(&scene).into_iter())
         .map(|(path, bytes)| match image::load_from_memory(&bytes) {
             Ok(image) => {
                 let bytes = written(&image.into_rgb8(), forms.next().unwrap());
@@ -178,12 +184,54 @@ fn a_region_is_decoded_from_the_strips_and_tiles_that_show_it() {
             }
         })
         .collect();
+    let ground_z = scene.origin.z + truth.ground_z;
+    (files, scene, ground_z)
+}
+
+/// The page fills files step by step, and plans anew in each step.
+#[test]
+fn photographs_of_the_ground_stay_whole_while_windows_of_views_are_filled() {
+    let (whole, scene, _) = house();
+    let [x, y, _] = scene.origin.into();
+    let options = LoadOptions {
+        orientation: Some("colmap".to_owned()),
+        roi: Some([x - 8.0, y - 8.0, x + 8.0, y + 8.0]),
+        max_views: Some(3),
+        ..LoadOptions::default()
+    };
     let head = |file: &InputFile| head_of_file(file).unwrap_or(file.clone());
-    let [x, y, z] = scene.origin.into();
+    let mut files: Vec<InputFile> = whole.iter().map(head).collect();
+    let mut in_both = 0;
+    let ground = files_of_ground(&files, &options);
+    assert_eq!(ground.len(), 4);
+    fill(&mut files, &whole, &ground);
+    let views = files_of_views(&files, &options);
+    for one in views {
+        in_both += usize::from(ground.iter().any(|g| g.file == one.file));
+        if !one.is_in(&files) {
+            fill(&mut files, &whole, &[one]);
+        }
+    }
+    assert!(in_both > 0, "no view is one of the ground's");
+    let loaded = load_scene(&files, &options).unwrap();
+    let expected = load_scene(&whole, &options).unwrap();
+    assert_eq!(loaded.warnings, expected.warnings);
+    assert_eq!(loaded.views.len(), 3);
+    for (a, b) in loaded.views.iter().zip(&expected.views) {
+        assert_eq!((&a.name, &a.camera), (&b.name, &b.camera));
+        assert!(a.rgb == b.rgb, "{}", a.name);
+    }
+}
+
+#[test]
+fn a_region_is_decoded_from_the_strips_and_tiles_that_show_it() {
+    let (whole, scene, ground_z) = house();
+    let head = |file: &InputFile| head_of_file(file).unwrap_or(file.clone());
+    let [x, y, _] = scene.origin.into();
     let options = LoadOptions {
         orientation: Some("colmap".to_owned()),
         roi: Some([x - 1.0, y - 1.0, x + 1.0, y + 1.0]),
-        ground_z: Some(z + truth.ground_z),
+        ground_z: Some(ground_z),
         ignore_check: true,
         ..LoadOptions::default()
     };

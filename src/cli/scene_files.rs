@@ -79,7 +79,8 @@ impl FileSource for SceneFiles {
             let path = &self.sources[source];
             let filled = match &one.ranges {
                 None => fs::read(path).map(|bytes| file.fill(bytes)),
-                Some(ranges) => read_ranges(path, ranges).map(|b| file.fill_ranges(ranges, &b)),
+                Some(ranges) => read_beside_head(path, file, ranges)
+                    .map(|bytes| bytes.is_some_and(|bytes| file.fill_ranges(ranges, &bytes))),
             };
             match filled {
                 Ok(true) => {}
@@ -89,6 +90,17 @@ impl FileSource for SceneFiles {
         }
         Ok(())
     }
+}
+
+/// Some ranges of a photograph, one after the other; `None` where its length or head has changed.
+fn read_beside_head(
+    path: &Path,
+    file: &InputFile,
+    ranges: &[Range<u64>],
+) -> io::Result<Option<Vec<u8>>> {
+    let head = read_ranges(path, &file.head_places())?;
+    let is_same = fs::metadata(path)?.len() == file.length() && *head == *file.head();
+    (is_same.then(|| read_ranges(path, ranges))).transpose()
 }
 
 /// Some ranges of a file, one after the other.

@@ -12,8 +12,13 @@ use crate::raster::{Directory, NumberRaster, tiff_tags as tags};
 const RASTER_TYPE: u64 = 1025;
 
 pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid> {
-    let raster = NumberRaster::read(&file.path, file.content())?;
     let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
+    let place = "give a GeoTIFF, whose tags state where it lies, north up";
+    // What has a place and heights is never held by its head.
+    if file.lacking().is_some() {
+        return Err(refuse("it states no place", place));
+    }
+    let raster = NumberRaster::read(&file.path, file.content())?;
     let reproject = "convert it with gdalwarp to the system of the orientation, in metres";
     let keys = raster.directory.numbers(tags::GEO_KEY_DIRECTORY);
     let keys = keys.unwrap_or_default();
@@ -22,12 +27,7 @@ pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid>
     system
         .is_frame_of(&stated)
         .map_err(|problem| refuse(&problem, reproject))?;
-    let (corner, cell) = placed(&raster.directory).map_err(|problem| {
-        refuse(
-            problem,
-            "give a GeoTIFF, whose tags state where it lies, north up",
-        )
-    })?;
+    let (corner, cell) = placed(&raster.directory).map_err(|problem| refuse(problem, place))?;
     // Coordinates are of the corner of a cell, unless the file says that they are of its centre.
     let half = if key(RASTER_TYPE) == Some(2) {
         0.0

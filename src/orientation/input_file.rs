@@ -118,8 +118,8 @@ impl InputFile {
     }
 
     /// Gives a photograph some ranges beside its head, instead of what it was filled with; `bytes`
-    /// are those of all, one after the other. False where it is not held by its head, or the bytes
-    /// are fewer.
+    /// are those of all, one after the other. False where it is not held by its head, or their
+    /// number is another.
     pub fn fill_ranges(&mut self, ranges: &[Range<u64>], bytes: &[u8]) -> bool {
         self.empty();
         let length: u64 = ranges.iter().map(|range| range.end - range.start).sum();
@@ -209,6 +209,12 @@ impl InputFile {
             Some(head) => Cow::Borrowed(&self.bytes[..head.bytes()]),
             None => Cow::Borrowed(&self.bytes),
         }
+    }
+
+    /// Where the bytes of the head of a photograph stand in the file; nowhere of another file.
+    pub fn head_places(&self) -> Vec<Range<u64>> {
+        let pieces = self.head.iter().flat_map(Head::of_head);
+        pieces.map(|piece| piece.place.clone()).collect()
     }
 
     /// Bytes of [`Self::head`].

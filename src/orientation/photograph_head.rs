@@ -29,6 +29,11 @@ impl PhotographHead {
         }
     }
 
+    /// Is it read under this path?
+    pub fn is_of(&self, path: &str) -> bool {
+        self.path == path.replace('\\', "/")
+    }
+
     /// What is to be read next.
     pub fn needs(&self) -> HeaderNeeds {
         let excerpt = Excerpt::new(&self.bytes, &self.pieces, self.whole);

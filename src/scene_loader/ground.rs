@@ -133,7 +133,7 @@ pub fn ground_heights(files: &[InputFile], options: &LoadOptions) -> Option<[f64
 /// What is needed of the files in whose pixels [`ground_heights`] measures. Of the files their
 /// heads suffice.
 pub fn ground_files(files: &[InputFile], options: &LoadOptions) -> Vec<Needed> {
-    files_near(files, &unreduced_plan(files, options), None)
+    files_near(&unreduced_plan(files, options), None)
 }
 
 /// What is needed of the files in whose pixels [`settled`] and
@@ -147,7 +147,7 @@ pub fn files_of_settling(files: &[InputFile], options: &LoadOptions) -> Vec<Need
     let whole = whole_plan(files, options);
     match options.roi.is_some() && are_small(&whole) {
         true => Vec::new(),
-        false => files_near(files, &whole, None),
+        false => files_near(&whole, None),
     }
 }
 
@@ -161,11 +161,11 @@ pub fn files_of_ground(files: &[InputFile], options: &LoadOptions) -> Vec<Needed
     let whole = whole_plan(files, options);
     let is_undecided = options.reduction.is_none() && !are_small(&whole);
     let mut measured = match is_undecided && whole.views.len() <= MOST_VIEWS {
-        true => files_near(files, &whole, None),
+        true => files_near(&whole, None),
         false => Vec::new(),
     };
     if let (Some(roi), true) = (options.roi, Plan::new(files, options, None).is_chosen) {
-        measured.extend(files_near(files, &whole, Some(middle_of(roi))));
+        measured.extend(files_near(&whole, Some(middle_of(roi))));
     }
     Needed::merged(measured, files)
 }
@@ -177,9 +177,14 @@ pub fn files_of_views(files: &[InputFile], options: &LoadOptions) -> Vec<Needed>
     plan.views.iter().map(|view| needed(files, view)).collect()
 }
 
-fn files_near(files: &[InputFile], whole: &Plan, place: Option<Point2<f64>>) -> Vec<Needed> {
+/// The files of [`nearest`], whole: they stay so while windows of others are read, and whatever
+/// they are reduced by.
+fn files_near(whole: &Plan, place: Option<Point2<f64>>) -> Vec<Needed> {
     let nearest = nearest(whole, place);
-    nearest.iter().map(|view| needed(files, view)).collect()
+    nearest
+        .iter()
+        .map(|view| Needed::whole(view.file))
+        .collect()
 }
 
 fn middle_of([x0, y0, x1, y1]: [f64; 4]) -> Point2<f64> {

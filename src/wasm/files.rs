@@ -23,7 +23,7 @@ impl Session {
         whole: f64,
         bytes: Option<Vec<u8>>,
     ) -> Result<JsValue, JsValue> {
-        let begun = self.head.take().filter(|_| bytes.is_some());
+        let begun = (self.head.take()).filter(|head| bytes.is_some() && head.is_of(path));
         let mut head = begun.unwrap_or_else(|| PhotographHead::new(path, whole as u64));
         if let (HeaderNeeds::Range(range), Some(bytes)) = (head.needs(), bytes)
             && !head.add(range, &bytes)
@@ -51,8 +51,8 @@ impl Session {
         }
     }
 
-    /// Gives a photograph ranges of its bytes beside its head: `places` are first and last place of
-    /// each, `bytes` those of all, one after the other.
+    /// Gives a photograph ranges of its bytes beside its head: `places` are the first place of each
+    /// and the one behind its last, `bytes` those of all, one after the other.
     #[wasm_bindgen(js_name = fillRanges)]
     pub fn fill_ranges(&mut self, path: &str, places: &[f64], bytes: &[u8]) -> Result<(), JsValue> {
         let ranges: Vec<Range<u64>> = (places.chunks_exact(2))
@@ -105,7 +105,7 @@ impl Session {
 #[derive(Serialize, tsify::Tsify)]
 struct LackingFile<'a> {
     path: &'a str,
-    /// First and last place of each range that is needed, one after the other; null for the whole.
+    /// Of each range that is needed the first place and the one behind its last; null for all.
     #[tsify(type = "number[] | null")]
     places: Option<Vec<f64>>,
 }

@@ -203,6 +203,7 @@ impl Session {
     #[wasm_bindgen(js_name = clearFiles)]
     pub fn clear_files(&mut self) {
         self.files.clear();
+        self.head = None;
         self.packed.clear();
         self.merged = MergedShards::default();
         self.project = None;

@@ -44,7 +44,11 @@ pub fn header_needs(file: &str, excerpt: Excerpt) -> HeaderNeeds {
             Some(range) if excerpt.held() + (range.end - range.start) <= most => {
                 HeaderNeeds::Range(range)
             }
-            None if image_header(file, excerpt).is_ok() && !is_placed_band(excerpt) => {
+            // What holds all bytes is no head.
+            None if excerpt.held() < excerpt.length()
+                && image_header(file, excerpt).is_ok()
+                && !is_placed_band(excerpt) =>
+            {
                 HeaderNeeds::Nothing
             }
             _ => HeaderNeeds::Whole,

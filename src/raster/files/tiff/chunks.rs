@@ -250,8 +250,13 @@ impl<'a> Tiff<'a> {
                 bytes_of_a_row: pixels.0 * samples,
             }));
         }
-        let bytes_of_a_row = pixels.0 * samples * usize::from(layout.bits / 8);
-        let data = decompress(layout.compression, data, bytes_of_a_row * pixels.1);
+        // A directory may state any size, also beyond the addresses of 32 bits.
+        let times = |a: usize, b: usize| {
+            let product = a.checked_mul(b);
+            product.ok_or_else(|| damaged("it states too many pixels".to_owned()))
+        };
+        let bytes_of_a_row = times(times(pixels.0, samples)?, usize::from(layout.bits / 8))?;
+        let data = decompress(layout.compression, data, times(bytes_of_a_row, pixels.1)?);
         Ok(Some(Chunk {
             data: data.map_err(damaged)?,
             bytes_of_a_row,

@@ -101,7 +101,8 @@ function optionsOf(wanted: RunOptions): LoadOptions {
 
 /** The outcomes that are kept of these tiles, by all that they depend on. */
 export function keptTilesOf(tileM: number): KeptTiles {
-  const photographs = files.value.map(({ path, blob }) => [path, blob.size]);
+  const changed = (blob: Blob) => (blob instanceof File ? blob.lastModified : 0);
+  const photographs = files.value.map(({ path, blob }) => [path, blob.size, changed(blob)]);
   const made = [CORE_VERSION, tileM, tileOptions(), plannedHeights(), params.value, photographs];
   return new KeptTiles(JSON.stringify(made));
 }
