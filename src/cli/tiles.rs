@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use ridgeline::execution::progress::silent;
-use ridgeline::tiles::{Area, ModelForm};
+use ridgeline::tiles::Area;
 
 use super::failure::Failure;
 use super::files;
@@ -38,7 +38,7 @@ pub(super) fn reconstruct_tiles(
             left_in_words(left)
         );
     }
-    let written = area.finish(&seconds, ModelForm::Squares).map_err(refuse)?;
+    let written = area.finish_in_squares(&seconds).map_err(refuse)?;
     files::write_all(out, &written)?;
     println!("written to {}", out.display());
     Ok(())

@@ -132,14 +132,29 @@ impl Area {
 
     /// One model of all tiles, as files; the first error where no tile could be read. `seconds`
     /// of each tile go into `report.json` and may be empty.
-    pub fn finish(self, seconds: &[f64], form: ModelForm) -> Result<Vec<(String, Vec<u8>)>> {
-        if let (true, Some(error)) = (self.parts.is_empty(), self.first_error) {
-            return Err(error);
+    pub fn finish(mut self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
+        let joined = self.join()?;
+        Ok(model_files(&joined, &self.params, &self.reports, seconds))
+    }
+
+    /// The same with 3D Tiles of a file for each square, so that a viewer fetches what it shows.
+    pub fn finish_in_squares(mut self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
+        let joined = self.join()?;
+        let (parts, reports) = (&self.parts, &self.reports);
+        Ok(files_in_squares(
+            &joined,
+            parts,
+            &self.params,
+            reports,
+            seconds,
+        ))
+    }
+
+    fn join(&mut self) -> Result<Joined> {
+        match self.first_error.take() {
+            Some(error) if self.parts.is_empty() => Err(error),
+            _ => Ok(join_cells(self.whole.clone(), &mut self.parts)),
         }
-        let (joined, squares) = join_cells(self.whole, self.parts, form, &self.params);
-        let mut files = model_files(&joined, &self.params, &self.reports, seconds);
-        take_in(&mut files, squares);
-        Ok(files)
     }
 }
 
@@ -278,43 +293,32 @@ fn in_words(buildings: usize, vacant: usize, squares: usize) -> String {
     }
 }
 
-/// As what the model of an area is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ModelForm {
-    /// As one, like that of a scene.
-    Whole,
-    /// Its 3D Tiles are a file for each square, so that a viewer fetches what it shows; where there
-    /// is one square with buildings only, as one.
-    Squares,
-}
-
-/// Joins the parts of all cells in the order of the grid, whatever the tiles were; with the files
-/// of the squares where they are asked for.
-pub(super) fn join_cells(
-    whole: Scene,
-    mut parts: Vec<CellPart>,
-    form: ModelForm,
-    params: &Params,
-) -> (Joined, Vec<(String, Vec<u8>)>) {
+/// Joins the parts of all cells in the order of the grid, whatever the tiles were.
+pub(super) fn join_cells(whole: Scene, parts: &mut [CellPart]) -> Joined {
     let place = |part: &CellPart| part.cell.core;
     parts.sort_by(|a, b| {
         let ([ax, ay, ..], [bx, by, ..]) = (place(a), place(b));
         ay.total_cmp(&by).then(ax.total_cmp(&bx))
     });
-    let joined = join(whole, &parts);
-    let squares = match form {
-        ModelForm::Squares if joined.squares_with_buildings() > 1 => {
-            joined.squares(&parts, params.texture.jpeg_quality)
-        }
-        _ => Vec::new(),
-    };
-    (joined, squares)
+    join(whole, parts)
 }
 
-/// Adds files; those of the same name take the place of what is there.
-pub(super) fn take_in(files: &mut Vec<(String, Vec<u8>)>, added: Vec<(String, Vec<u8>)>) {
-    files.retain(|(name, _)| added.iter().all(|(other, _)| other != name));
-    files.extend(added);
+/// The files of the model of all tiles, with a report and 3D Tiles of a file for each square, where
+/// several have buildings; `parts` are those that were joined.
+pub(super) fn files_in_squares(
+    joined: &Joined,
+    parts: &[CellPart],
+    params: &Params,
+    reports: &[TileReport],
+    seconds: &[f64],
+) -> Vec<(String, Vec<u8>)> {
+    let mut files = model_files(joined, params, reports, seconds);
+    if joined.squares_with_buildings() > 1 {
+        let squares = joined.squares(parts, params.texture.jpeg_quality);
+        files.retain(|(name, _)| squares.iter().all(|(other, _)| other != name));
+        files.extend(squares);
+    }
+    files
 }
 
 /// The files of the model of all tiles, with a report.

@@ -82,7 +82,6 @@ mod tests {
     use super::*;
     use crate::execution::progress::silent;
     use crate::synthetic::{gable_scene, to_files};
-    use crate::tiles::ModelForm;
 
     fn files() -> Vec<InputFile> {
         let (scene, _) = gable_scene(48);
@@ -137,7 +136,7 @@ mod tests {
         for outcome in &kept {
             planned.take(outcome).unwrap();
         }
-        let nothing = refusal(planned.finish(&[], ModelForm::Whole).unwrap_err());
+        let nothing = refusal(planned.finish(&[]).unwrap_err());
         assert!(nothing.contains("no tile could be read"), "{nothing}");
     }
 }

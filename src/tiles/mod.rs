@@ -35,7 +35,7 @@ mod plan;
 mod tile;
 mod vacancy;
 
-pub use area::{Area, ModelForm, TileReport, refuse_corrections};
+pub use area::{Area, TileReport, refuse_corrections};
 pub use division::{FlightPlan, TilePlan};
 pub use join::{CellPart, Joined, join};
 pub use plan::{BlockPlan, BlockSource, HeadStamp, InputStamp, PlannedCell, PlannedTile};

@@ -15,9 +15,7 @@ use std::io::{self, Read};
 use image::ImageFormat;
 use serde::{Deserialize, Serialize};
 
-use super::area::{
-    ModelForm, divided, join_cells, model_files, refuse_corrections, take_in, work_off,
-};
+use super::area::{divided, files_in_squares, join_cells, refuse_corrections, work_off};
 use super::division::Division;
 use super::join::Joined;
 use super::part_file::{PartKey, TileOutcome};
@@ -385,9 +383,8 @@ impl BlockPlan {
                     .to_owned(),
             });
         }
-        let (joined, squares) = join_cells(whole, parts, ModelForm::Squares, &self.params);
-        let mut files = model_files(&joined, &self.params, &reports, &[]);
-        take_in(&mut files, squares);
+        let joined = join_cells(whole, &mut parts);
+        let mut files = files_in_squares(&joined, &parts, &self.params, &reports, &[]);
         let Joined {
             scene,
             model,

@@ -101,7 +101,7 @@ mod tests {
     use crate::scene_loader::LoadOptions;
     use crate::synthetic::{gable_scene, shed_scene, to_files};
     use crate::testing::line;
-    use crate::tiles::{Area, ModelForm};
+    use crate::tiles::Area;
     use nalgebra::{Point3, Vector3};
 
     /// Is nothing high in the middle 10 m by 10 m of a lawn, with a house whose roof falls towards
@@ -164,7 +164,7 @@ mod tests {
         let mut area = Area::plan(&mut source, &options, Some([0.0, 8.0]), &params, 60.0).unwrap();
         let report = area.step(&mut source, &silent()).unwrap().unwrap();
         let outcome = report.outcome.clone();
-        (outcome, area.finish(&[], ModelForm::Whole).unwrap())
+        (outcome, area.finish(&[]).unwrap())
     }
 
     const EAST: [f64; 4] = [26.0, -10.0, 33.0, -1.0];

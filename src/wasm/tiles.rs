@@ -10,7 +10,7 @@ use crate::orientation::{InputFile, Needed};
 use crate::scene_loader::{
     LoadOptions, files_of_ground, files_of_views, ground_files, ground_heights,
 };
-use crate::tiles::{Area, FlightPlan, ModelForm, TileReport};
+use crate::tiles::{Area, FlightPlan, TileReport};
 
 /// What a tile came to, and its model (glTF) where it has one.
 #[wasm_bindgen]
@@ -139,10 +139,7 @@ impl Session {
     #[wasm_bindgen(js_name = joinTiles)]
     pub fn join_tiles(&mut self) -> Result<(), JsValue> {
         let area = self.area.take().ok_or_else(not_planned)?;
-        self.outputs = Some(
-            area.finish(&[], ModelForm::Whole)
-                .map_err(|e| input_error(&e))?,
-        );
+        self.outputs = Some(area.finish(&[]).map_err(|e| input_error(&e))?);
         Ok(())
     }
 
