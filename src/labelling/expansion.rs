@@ -510,6 +510,29 @@ mod tests {
     }
 
     #[test]
+    fn planes_of_a_group_have_no_cell_in_common_and_keep_their_order_elsewhere() {
+        let near = |cell: usize, plane: u32| cell.abs_diff(3 * plane as usize % 20) < 3;
+        let unary = (0..22).map(|c| (0..20).filter(|&p| near(c, p)).map(|p| (p, -1.0)).collect());
+        let graph = CellGraph::new(&row(unary.collect(), vec![(1.0, vec![]); 21]), 20);
+        let groups = &graph.independent_planes;
+        assert!(groups.len() < 20);
+        let mut group_of = [usize::MAX; 20];
+        for (i, group) in groups.iter().enumerate() {
+            group.iter().for_each(|&p| group_of[p as usize] = i);
+        }
+        for later in 0..20 {
+            let cells = graph.surroundings_of(later);
+            for earlier in 0..later {
+                let is_shared = cells
+                    .iter()
+                    .any(|c| graph.surroundings_of(earlier).contains(c));
+                let in_order = group_of[earlier as usize] < group_of[later as usize];
+                assert!(!is_shared || in_order, "{earlier} and {later}");
+            }
+        }
+    }
+
+    #[test]
     fn a_plane_never_covers_a_cell_that_it_may_not() {
         let energy = row(
             vec![vec![(0, -5.0)], vec![(1, 0.5)], vec![(0, -5.0)]],
