@@ -6,11 +6,11 @@
 //! Costs are computed on demand, from the heights of both planes at the border: a
 //! list of all pairs would grow with the square of the planes.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Point2, Point3, Vector2};
 
 use super::arrangement::{Arrangement, CellEdge};
-use super::line_index::{LineIndex, heights_at};
-use crate::geometry::Plane;
+use super::line_index::{FAR_BESIDE_LINE, LineIndex, height_at};
+use crate::geometry::{Plane, Segment3};
 use crate::labelling::{NO_PLANE, PairwiseCosts};
 use crate::math::{larger, smaller};
 use crate::params::RoofParams;
@@ -64,21 +64,51 @@ pub(crate) fn side_share(
     left: Option<&Plane>,
     right: Option<&Plane>,
 ) -> f64 {
-    let lines = index.along([a, b], [*a, *b]);
-    let pieces = ((b - a).norm() / piece_m).ceil().max(1.0);
+    let length = (b - a).norm();
+    let pieces = (length / piece_m).ceil().max(1.0);
     let at = |k: f64| a + (b - a) * (k / pieces);
-    let share = |k: usize| {
-        let ends = [at(k as f64), at((k + 1) as f64)];
-        let middle = at(k as f64 + 0.5);
+    let ends = |k: usize| [at(k as f64), at((k + 1) as f64)];
+    let planes = [left, right];
+    // By piece and plane: does a line in the plane run along it?
+    let mut on_line = vec![[false; 2]; pieces as usize];
+    for line in index.along([a, b], [*a, *b]) {
+        for k in pieces_beside(line, [a, b], pieces) {
+            let Some(z) = height_at(&at(k as f64 + 0.5), line) else {
+                continue;
+            };
+            for (on_line, plane) in on_line[k].iter_mut().zip(planes) {
+                let is_near = |plane: &Plane| is_line_height(z, mean_height(plane, &ends(k)));
+                *on_line = *on_line || plane.is_some_and(is_near);
+            }
+        }
+    }
+    let share = |(k, on_line): (usize, [bool; 2])| {
         let piece = CellBorder {
             full: 1.0,
             registered: 0.0,
-            heights: heights_at(&middle, &lines),
-            ends,
+            heights: Vec::new(),
+            ends: ends(k),
         };
-        piece.share(left, right)
+        piece.share_if(planes, on_line)
     };
-    (0..pieces as usize).map(share).sum::<f64>() / pieces
+    on_line.into_iter().enumerate().map(share).sum::<f64>() / pieces
+}
+
+/// The pieces of a side that a line may run beside.
+fn pieces_beside(
+    line: &Segment3,
+    [a, b]: [&Point2<f64>; 2],
+    pieces: f64,
+) -> std::ops::Range<usize> {
+    let along = b - a;
+    let length = along.norm().max(1e-12);
+    let place = |p: &Point3<f64>| (p.xy() - a).dot(&along) / length;
+    let (p, q) = (place(&line.p0), place(&line.p1));
+    // A place beside a line, which is about parallel, is not much farther than its end; a piece is
+    // at its middle.
+    let first = (smaller(p, q) - FAR_BESIDE_LINE) / length * pieces - 0.5;
+    let last = (larger(p, q) + FAR_BESIDE_LINE) / length * pieces - 0.5;
+    first.clamp(0.0, pieces) as usize..(last + 1.0).clamp(0.0, pieces).ceil() as usize
 }
 
 impl PairwiseCosts for BorderCosts {
@@ -115,17 +145,25 @@ struct CellBorder {
 impl CellBorder {
     /// Share of its full cost between two planes.
     fn share(&self, left: Option<&Plane>, right: Option<&Plane>) -> f64 {
-        let sides = [
-            (left, right, -self.to_left()),
-            (right, left, self.to_left()),
-        ];
-        let supports = sides.map(|(plane, beyond, outwards)| match plane {
-            Some(plane) if self.bounds(plane) => {
-                let open_top = self.open_top(plane, beyond, &outwards);
-                ON_LINE + (1.0 - ON_LINE) * open_top
+        let planes = [left, right];
+        self.share_if(
+            planes,
+            planes.map(|plane| plane.is_some_and(|p| self.bounds(p))),
+        )
+    }
+
+    /// The same where it is known whether a line in either plane runs along it.
+    fn share_if(&self, [left, right]: [Option<&Plane>; 2], on_line: [bool; 2]) -> f64 {
+        let sides = [(left, right, -1.0), (right, left, 1.0)];
+        let mut supports = [1.0; 2];
+        for ((support, on_line), (plane, beyond, side)) in
+            supports.iter_mut().zip(on_line).zip(sides)
+        {
+            if let Some(plane) = plane.filter(|_| on_line) {
+                let open_top = self.open_top(plane, beyond, &(self.to_left() * side));
+                *support = ON_LINE + (1.0 - ON_LINE) * open_top;
             }
-            _ => 1.0,
-        });
+        }
         let crease = match (left, right) {
             (Some(a), Some(b)) if self.is_crease(a, b) => CREASE,
             _ => 1.0,
@@ -135,13 +173,12 @@ impl CellBorder {
 
     /// Does a reconstructed line run along the border at a height?
     fn has_line_at(&self, z: f64) -> bool {
-        self.heights.iter().any(|h| (h - z).abs() < LINE_HEIGHT)
+        self.heights.iter().any(|h| is_line_height(*h, z))
     }
 
     /// Does a reconstructed line in the plane run along the border?
     fn bounds(&self, plane: &Plane) -> bool {
-        !self.heights.is_empty()
-            && self.has_line_at(middle(self.ends.map(|p| plane.z_at(p.x, p.y))))
+        !self.heights.is_empty() && self.has_line_at(mean_height(plane, &self.ends))
     }
 }
 
@@ -162,7 +199,7 @@ impl CellBorder {
     /// ridge, and a ridge has a second slope (prior of roofs).
     fn open_top(&self, plane: &Plane, beyond: Option<&Plane>, outwards: &Vector2<f64>) -> f64 {
         let uphill = -plane.normal.xy();
-        let height = |plane: &Plane| middle(self.ends.map(|p| plane.z_at(p.x, p.y)));
+        let height = |plane: &Plane| mean_height(plane, &self.ends);
         let goes_on = beyond.is_some_and(|other| height(other) > height(plane) - MEETING);
         match uphill.norm() {
             slope if slope > LEAST_SLOPE_SINE && !goes_on => {
@@ -173,8 +210,15 @@ impl CellBorder {
     }
 }
 
-fn middle(heights: [f64; 2]) -> f64 {
+/// Of the two ends of a border.
+fn mean_height(plane: &Plane, ends: &[Point2<f64>; 2]) -> f64 {
+    let heights = ends.map(|p| plane.z_at(p.x, p.y));
     0.5 * (heights[0] + heights[1])
+}
+
+/// Does a line at a height lie in a plane that is at z there?
+fn is_line_height(height: f64, z: f64) -> bool {
+    (height - z).abs() < LINE_HEIGHT
 }
 
 /// Planes at less than 6 degrees that meet are one plane found twice, and no crease: the cosine of

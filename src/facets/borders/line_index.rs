@@ -14,6 +14,8 @@ pub(crate) struct LineIndex {
 /// A border lies on a line within this distance in plan, metres, and this sine of the angle.
 const BESIDE_LINE: f64 = 0.25;
 const LINE_SINE: f64 = 0.12;
+/// A place beside a line is no farther beyond its ends along a border that runs along it, metres.
+pub(super) const FAR_BESIDE_LINE: f64 = (1.0 + 2.0 * LINE_SINE) * BESIDE_LINE;
 
 impl LineIndex {
     /// Indexes the lines.
@@ -47,17 +49,19 @@ impl LineIndex {
 }
 
 /// Heights of lines beside a place, ascending.
-pub(super) fn heights_at(place: &Point2<f64>, lines: &[&Segment3]) -> Vec<f64> {
-    let height = |line: &&Segment3| {
-        let along = line.p1.xy() - line.p0.xy();
-        let length = along.norm();
-        let (u, r) = (along / length, place - line.p0.xy());
-        let t = r.dot(&u) / length;
-        let slack = BESIDE_LINE / length;
-        ((-slack..=1.0 + slack).contains(&t) && u.perp(&r).abs() < BESIDE_LINE)
-            .then(|| line.at(t.clamp(0.0, 1.0)).z)
-    };
-    let mut heights: Vec<f64> = lines.iter().filter_map(height).collect();
+fn heights_at(place: &Point2<f64>, lines: &[&Segment3]) -> Vec<f64> {
+    let mut heights: Vec<f64> = lines.iter().filter_map(|l| height_at(place, l)).collect();
     heights.sort_by(f64::total_cmp);
     heights
+}
+
+/// Height of a line beside a place; `None` where it is not.
+pub(super) fn height_at(place: &Point2<f64>, line: &Segment3) -> Option<f64> {
+    let along = line.p1.xy() - line.p0.xy();
+    let length = along.norm();
+    let (u, r) = (along / length, place - line.p0.xy());
+    let t = r.dot(&u) / length;
+    let slack = BESIDE_LINE / length;
+    ((-slack..=1.0 + slack).contains(&t) && u.perp(&r).abs() < BESIDE_LINE)
+        .then(|| line.at(t.clamp(0.0, 1.0)).z)
 }

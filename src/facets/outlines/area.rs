@@ -1,5 +1,7 @@
 //! What the views say of the area between two ways.
 
+use std::ops::Range;
+
 use nalgebra::{Point2, Vector2};
 
 use super::energy::OutlineEnergy;
@@ -51,8 +53,8 @@ impl<'a> PlanArea<'a> {
             let outline: Vec<Vec<Point2<f64>>> = of_facet
                 .map(|r| r.vertices.iter().map(|&v| rings.vertices[v]).collect())
                 .collect();
-            for sample in area.inside(&outline) {
-                area.owners[sample] = facet as u32;
+            for samples in area.inside(&outline) {
+                area.owners[samples].fill(facet as u32);
             }
         }
         Some(area)
@@ -63,8 +65,8 @@ impl<'a> PlanArea<'a> {
         self.labels[facet]
     }
 
-    /// The samples inside an odd number of rings.
-    pub(super) fn inside(&self, rings: &[Vec<Point2<f64>>]) -> Vec<usize> {
+    /// The samples inside an odd number of rings, as stretches of rows.
+    pub(super) fn inside(&self, rings: &[Vec<Point2<f64>>]) -> Vec<Range<usize>> {
         let grid = &self.grid;
         let index = |x: f64, axis: usize| (x - grid.origin[axis]) / grid.step - 0.5;
         let [low, high] = bounds(rings.iter().flatten().copied());
@@ -83,54 +85,81 @@ impl<'a> PlanArea<'a> {
             for pair in at.chunks_exact(2) {
                 let first = pair[0].ceil().max(0.0) as usize;
                 let end = (pair[1].floor() + 1.0).clamp(0.0, grid.width as f64) as usize;
-                samples.extend((first..end).map(|column| row * grid.width + column));
+                if first < end {
+                    samples.push(row * grid.width + first..row * grid.width + end);
+                }
             }
         }
         samples
     }
 
+    /// May outlines within two boxes have samples in common?
+    pub(super) fn have_samples_in_common(
+        &self,
+        [a, b]: &[Point2<f64>; 2],
+        [c, d]: &[Point2<f64>; 2],
+    ) -> bool {
+        let step = self.grid.step;
+        (0..2).all(|i| a[i] <= d[i] + step && c[i] <= b[i] + step)
+    }
+
     /// By how much the evidence of the views grows, nats, where samples go to the other side of a
     /// chain; `None` where a third facet covers one, or its new facet's plane may not.
-    pub(super) fn gain(&self, chain: &Chain, samples: &[usize]) -> Option<f64> {
-        let mut gain = 0.0;
-        for &sample in samples {
-            let (from, to) = self.sides_of(chain, sample)?;
-            // What a facet loses it may have covered for its neighbours' sake alone.
-            let before = from.map_or(0.0, |f| self.cost(sample, f).unwrap_or(0.0));
-            let after = match to {
-                Some(facet) => self.cost(sample, facet)?,
-                None => 0.0,
-            };
-            gain += before - after;
+    pub(super) fn gain(&self, chain: &Chain, samples: &[Range<usize>]) -> Option<f64> {
+        let (mut gain, mut of_one) = (0.0, 0.0);
+        // Samples one after the other mostly lie in one cell and one facet.
+        let mut at = None;
+        for samples in samples {
+            for (cell, owner) in
+                (self.cells[samples.clone()].iter()).zip(&self.owners[samples.clone()])
+            {
+                if at != Some((*cell, *owner)) {
+                    at = Some((*cell, *owner));
+                    of_one = self.gain_of_one(chain, *cell, *owner)?;
+                }
+                gain += of_one;
+            }
         }
         Some(gain * self.grid.step * self.grid.step)
     }
 
+    /// The gain of one sample, nats a square metre.
+    fn gain_of_one(&self, chain: &Chain, cell: u32, owner: u32) -> Option<f64> {
+        let (from, to) = sides_of(chain, owner)?;
+        // What a facet loses it may have covered for its neighbours' sake alone.
+        let before = from.map_or(0.0, |f| self.cost(cell, f).unwrap_or(0.0));
+        let after = match to {
+            Some(facet) => self.cost(cell, facet)?,
+            None => 0.0,
+        };
+        Some(before - after)
+    }
+
     /// Gives samples to the other side of a chain.
-    pub(super) fn change_hands(&mut self, chain: &Chain, samples: &[usize]) {
-        for &sample in samples {
-            if let Some((_, to)) = self.sides_of(chain, sample) {
-                self.owners[sample] = to.map_or(NOBODY, |facet| facet as u32);
+    pub(super) fn change_hands(&mut self, chain: &Chain, samples: &[Range<usize>]) {
+        for owner in samples.iter().flat_map(|s| s.clone()) {
+            let owner = &mut self.owners[owner];
+            if let Some((_, to)) = sides_of(chain, *owner) {
+                *owner = to.map_or(NOBODY, |facet| facet as u32);
             }
         }
     }
 
-    /// The facet, or none, that a sample beside a chain belongs to, and the one beyond the chain.
-    fn sides_of(&self, chain: &Chain, sample: usize) -> Option<(Option<usize>, Option<usize>)> {
-        let owner = (self.owners[sample] != NOBODY).then_some(self.owners[sample] as usize);
-        let (left, right) = (Some(chain.left), chain.right);
-        match owner {
-            o if o == left => Some((left, right)),
-            o if o == right => Some((right, left)),
-            _ => None,
-        }
-    }
-
-    /// What a facet's plane costs at a sample, nats a square metre; `None` where it may not be.
-    fn cost(&self, sample: usize, facet: usize) -> Option<f64> {
-        let cell = self.cells[sample];
+    /// What a facet's plane costs in a cell, nats a square metre; `None` where it may not be.
+    fn cost(&self, cell: u32, facet: usize) -> Option<f64> {
         (cell != u32::MAX).then_some(())?;
         let cost = (self.energy.cost)(cell as usize, self.labels[facet])?;
         Some(cost / self.energy.arrangement.areas[cell as usize])
+    }
+}
+
+/// The facet, or none, that a sample beside a chain belongs to, and the one beyond the chain.
+fn sides_of(chain: &Chain, owner: u32) -> Option<(Option<usize>, Option<usize>)> {
+    let owner = (owner != NOBODY).then_some(owner as usize);
+    let (left, right) = (Some(chain.left), chain.right);
+    match owner {
+        o if o == left => Some((left, right)),
+        o if o == right => Some((right, left)),
+        _ => None,
     }
 }

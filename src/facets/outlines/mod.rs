@@ -19,6 +19,7 @@
 //! energy  what the energy of outlines is made of
 //! rings   the outlines of all facets, and the chains of sides that they share
 //! ways    simpler ways between two vertices of a chain
+//! moves   what each of them takes away, kept as long as nothing around it changes
 //! area    what the views say of the area between two ways
 //! ```
 //!
@@ -26,42 +27,16 @@
 
 mod area;
 mod energy;
+mod moves;
 mod rings;
 mod ways;
 
-use nalgebra::Point2;
-
 use self::area::PlanArea;
 pub(super) use self::energy::OutlineEnergy;
-use self::rings::{Chain, Links, Rings};
-use super::borders::{ON_LINE, side_share};
+use self::moves::KnownMoves;
+use self::rings::Rings;
 use super::delineation::{Delineation, Outline};
-use crate::evidence::CornerTable;
-
-/// Sides are rated in pieces of this length, metres: lines that are no farther away run along them.
-const PIECE_M: f64 = 0.25;
-
-/// Energies that differ by less are the same, nats.
-const ROUNDING_NATS: f64 = 1e-6;
-
-/// A simpler way between two vertices of a chain.
-struct Move {
-    /// By how much the energy falls, nats.
-    gain: f64,
-    /// From this vertex of the chain to that one.
-    stretch: [usize; 2],
-    /// The positions along the simpler way, with its ends.
-    way: Vec<Point2<f64>>,
-    /// Samples of the area that changes hands.
-    samples: Vec<usize>,
-}
-
-impl Move {
-    /// The vertices between the ends.
-    fn between(&self) -> &[Point2<f64>] {
-        &self.way[1..self.way.len() - 1]
-    }
-}
+use crate::geometry::bounds;
 
 impl OutlineEnergy<'_> {
     /// The outlines, those that are `accepted` with the corners of least energy.
@@ -71,22 +46,22 @@ impl OutlineEnergy<'_> {
         let Some(mut area) = PlanArea::new(self, labels, &rings) else {
             return found;
         };
+        let mut known = KnownMoves::default();
         // Every move takes energy or a vertex away, so that this ends; the bound guards against
         // rounding.
         const MOST_ROUNDS: usize = 50;
         for _ in 0..MOST_ROUNDS {
             let mut changed = vec![false; found.outlines.len()];
-            let (chains, links) = (rings.chains(), rings.links());
-            let found =
-                crate::execution::map(&chains, |_, chain| self.best(chain, &rings, &links, &area));
-            for (chain, best) in chains.iter().zip(found) {
+            for (chain, best) in known.best_of_chains(self, &rings, &area) {
                 // A chain knows places in the rings as they were when the round began.
                 let is_known = !chain.facets().any(|f| changed[f]);
                 if let Some(best) = best.filter(|_| is_known)
-                    && !ways::meets_others(&best.way, chain, best.stretch, &rings)
+                    && !ways::meets_others(&best.way, &chain, best.stretch, &rings)
                 {
-                    rings.replace(chain, best.stretch, best.between());
-                    area.change_hands(chain, &best.samples);
+                    let outline = best.outline(&chain, &rings);
+                    rings.replace(&chain, best.stretch, best.between());
+                    area.change_hands(&chain, &area.inside(std::slice::from_ref(&outline)));
+                    known.forget_area(bounds(outline));
                     chain.facets().for_each(|f| changed[f] = true);
                 }
             }
@@ -109,93 +84,6 @@ impl OutlineEnergy<'_> {
             vertices: rings.vertices,
         }
     }
-
-    /// The move along a chain that takes most energy away.
-    fn best(&self, chain: &Chain, rings: &Rings, links: &Links, area: &PlanArea) -> Option<Move> {
-        let mut best: Option<Move> = None;
-        let own = chain.way(rings, [0, chain.vertices.len() - 1]);
-        let sides: Vec<f64> = (own.windows(2))
-            .map(|side| self.side(side, chain, area))
-            .collect();
-        for [from, to] in chain.stretches() {
-            let (old, stretch) = (&own[from..=to], [from, to]);
-            let before = sides[from..to].iter().sum::<f64>() + corners(old, chain, stretch, rings);
-            for between in ways::simpler(chain, stretch, rings, links) {
-                let mut outline = old.to_vec();
-                outline.extend(between.iter().rev());
-                let samples = area.inside(&[outline]);
-                let Some(nats) = area.gain(chain, &samples) else {
-                    continue;
-                };
-                // Of two ways that cost the same the one with fewer vertices is taken.
-                let fewer = between.len() + 2 < old.len();
-                let so_far = match &best {
-                    Some(best) => best.gain,
-                    None if fewer => -ROUNDING_NATS,
-                    None => ROUNDING_NATS,
-                };
-                let mut way = vec![old[0]];
-                way.extend(between);
-                way.push(old[old.len() - 1]);
-                let most = before - corners(&way, chain, stretch, rings) + nats;
-                // Whatever lines run along it, the way costs something.
-                if most - self.least(&way) <= so_far {
-                    continue;
-                }
-                let gain = most - self.sides(&way, chain, area);
-                if gain > so_far && !ways::meets_others(&way, chain, stretch, rings) {
-                    best = Some(Move {
-                        gain,
-                        stretch,
-                        way,
-                        samples,
-                    });
-                }
-            }
-        }
-        best
-    }
-
-    /// What the sides of a way cost at least, nats.
-    fn least(&self, way: &[Point2<f64>]) -> f64 {
-        let length: f64 = way.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-        // Less by what rounding may add to the sum of many pieces.
-        ON_LINE * length * self.border_nats_per_m - ROUNDING_NATS
-    }
-
-    /// What the sides of a way cost, nats.
-    fn sides(&self, way: &[Point2<f64>], chain: &Chain, area: &PlanArea) -> f64 {
-        way.windows(2).map(|w| self.side(w, chain, area)).sum()
-    }
-
-    /// What a side costs, by its two ends, nats: V of the labelling.
-    fn side(&self, ends: &[Point2<f64>], chain: &Chain, area: &PlanArea) -> f64 {
-        let plane = |facet: usize| &self.planes[area.label(facet) as usize];
-        let (left, right) = (plane(chain.left), chain.right.map(plane));
-        let share = side_share(self.lines, [&ends[0], &ends[1]], PIECE_M, Some(left), right);
-        share * (ends[1] - ends[0]).norm() * self.border_nats_per_m
-    }
-}
-
-/// What the corners of a way cost, nats, with those at its ends: in the mean over the facets on
-/// both sides of it.
-fn corners(way: &[Point2<f64>], chain: &Chain, stretch: [usize; 2], rings: &Rings) -> f64 {
-    let around = rings.around(chain, stretch);
-    let of_facet = |[before, after]: &[Point2<f64>; 2]| {
-        let mut all = vec![*before];
-        all.extend(way);
-        all.push(*after);
-        all.windows(3)
-            .map(|w| corner(w[0], w[1], w[2]))
-            .sum::<f64>()
-    };
-    around.iter().map(of_facet).sum::<f64>() / around.len() as f64
-}
-
-fn corner(a: Point2<f64>, b: Point2<f64>, c: Point2<f64>) -> f64 {
-    let (into, out) = (b - a, c - b);
-    let turn = crate::math::atan2(into.perp(&out), into.dot(&out)).abs();
-    CornerTable::fitted().cost(turn.to_degrees(), PIECE_M)
 }
 
 #[cfg(test)]
@@ -205,7 +93,7 @@ mod tests {
     use crate::facets::delineation::delineate;
     use crate::geometry::Plane;
     use crate::labelling::NO_PLANE;
-    use nalgebra::{Vector2, Vector3};
+    use nalgebra::{Point2, Vector2, Vector3};
 
     fn frame([x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) -> impl Iterator<Item = Border> {
         let c = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];

@@ -42,6 +42,18 @@ pub(super) struct Chain {
     is_closed: bool,
 }
 
+/// All that the simpler ways along a chain depend on, but for who covers the plan.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct ChainPlace {
+    vertices: Vec<usize>,
+    facets: (usize, Option<usize>),
+    is_closed: bool,
+    /// The vertices before and after it, in the rings on both sides.
+    around: Vec<[usize; 2]>,
+    /// The vertices that sides join its ends with.
+    joined: [BTreeSet<usize>; 2],
+}
+
 /// Most vertices that one move takes away.
 const MOST_REMOVED: usize = 12;
 
@@ -49,6 +61,18 @@ impl Chain {
     /// The facets beside it.
     pub(super) fn facets(&self) -> impl Iterator<Item = usize> {
         std::iter::once(self.left).chain(self.right)
+    }
+
+    /// Where it lies.
+    pub(super) fn place(&self, rings: &Rings, links: &Links) -> ChainPlace {
+        let last = self.vertices.len() - 1;
+        ChainPlace {
+            vertices: self.vertices.clone(),
+            facets: (self.left, self.right),
+            is_closed: self.is_closed,
+            around: rings.vertices_around(self, [0, last]),
+            joined: [0, last].map(|i| links[&self.vertices[i]].clone()),
+        }
     }
 
     /// The stretches of two sides and more, by their first and last vertex. Of a chain that is a
@@ -162,12 +186,20 @@ impl Rings {
     }
 
     /// For the facet on either side the positions before and after a stretch, along the chain.
-    pub(super) fn around(&self, chain: &Chain, [from, to]: [usize; 2]) -> Vec<[Point2<f64>; 2]> {
+    pub(super) fn around(&self, chain: &Chain, stretch: [usize; 2]) -> Vec<[Point2<f64>; 2]> {
+        let vertices = self.vertices_around(chain, stretch).into_iter();
+        vertices
+            .map(|pair| pair.map(|v| self.vertices[v]))
+            .collect()
+    }
+
+    /// The vertices there.
+    fn vertices_around(&self, chain: &Chain, [from, to]: [usize; 2]) -> Vec<[usize; 2]> {
         let at = |p: Place, forward: usize, backward: usize| {
             let ring = &self.rings[p.ring].vertices;
             // Rings are gone around at most twice.
             let index = p.index + forward + 3 * ring.len() - backward;
-            self.vertices[ring[index % ring.len()]]
+            ring[index % ring.len()]
         };
         let left = [at(chain.in_left, from, 1), at(chain.in_left, to + 1, 0)];
         let right = |p: Place| [at(p, 1, from), at(p, 0, to + 1)];
