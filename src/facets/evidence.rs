@@ -92,6 +92,11 @@ impl PlaneEvidence {
             .map(|i| &self.cells[cell][i].1)
     }
 
+    /// The planes that may cover a cell, ascending, with the evidence for each.
+    pub(super) fn of_cell(&self, cell: usize) -> &[(u32, CellEvidence)] {
+        &self.cells[cell]
+    }
+
     /// What a plane costs in a cell, nats, but for what a register says; `None` where the plane may
     /// not cover it.
     pub(super) fn cost(&self, cell: usize, plane: u32) -> Option<f64> {

@@ -71,14 +71,19 @@ pub(crate) fn side_share(
     let planes = [left, right];
     // By piece and plane: does a line in the plane run along it?
     let mut on_line = vec![[false; 2]; pieces as usize];
-    for line in index.along([a, b], [*a, *b]) {
-        for k in pieces_beside(line, [a, b], pieces) {
-            let Some(z) = height_at(&at(k as f64 + 0.5), line) else {
-                continue;
-            };
-            for (on_line, plane) in on_line[k].iter_mut().zip(planes) {
-                let is_near = |plane: &Plane| is_line_height(z, mean_height(plane, &ends(k)));
-                *on_line = *on_line || plane.is_some_and(is_near);
+    for first in (0..on_line.len()).step_by(PART_PIECES) {
+        let end = on_line.len().min(first + PART_PIECES);
+        let part = [at(first as f64), at(end as f64)];
+        for line in index.along_part([a, b], part) {
+            let beside = pieces_beside(line, [a, b], pieces);
+            for k in beside.start.max(first)..beside.end.min(end) {
+                let Some(z) = height_at(&at(k as f64 + 0.5), line) else {
+                    continue;
+                };
+                for (on_line, plane) in on_line[k].iter_mut().zip(planes) {
+                    let is_near = |plane: &Plane| is_line_height(z, mean_height(plane, &ends(k)));
+                    *on_line = *on_line || plane.is_some_and(is_near);
+                }
             }
         }
     }
@@ -93,6 +98,10 @@ pub(crate) fn side_share(
     };
     on_line.into_iter().enumerate().map(share).sum::<f64>() / pieces
 }
+
+/// Lines are looked up for so many pieces of a side at a time: the box around a long one would hold
+/// most lines of a house.
+const PART_PIECES: usize = 8;
 
 /// The pieces of a side that a line may run beside.
 fn pieces_beside(
@@ -295,5 +304,54 @@ mod tests {
         assert_eq!(ridge.cost(0, NO_PLANE, 0), 2.0 * ON_LINE, "an eave");
         let below_a_wall = costs(gable, 3.0, true);
         assert_eq!(below_a_wall.cost(0, 0, 1), 2.0 * ON_LINE);
+    }
+
+    #[test]
+    fn a_long_side_costs_what_its_pieces_cost_by_all_lines() {
+        let mut next = crate::testing::uniform(5);
+        let mut draw = |low: f64, high: f64| low + (high - low) * next();
+        let mut supported = 0;
+        for _ in 0..200 {
+            let turn = draw(-3.0, 3.0);
+            let (sin, cos) = crate::math::sin_cos(turn);
+            let along = Vector2::new(cos, sin);
+            let a = Point2::new(draw(-5.0, 5.0), draw(-5.0, 5.0));
+            let b = a + along * draw(0.1, 30.0);
+            // Lines along the side and in all directions, beside it and beyond its ends.
+            let lines = (0..40).map(|_| {
+                let from = a + along * draw(-3.0, 33.0);
+                let from = from + Vector2::new(draw(-0.4, 0.4), draw(-0.4, 0.4));
+                let to = from + along * draw(0.1, 6.0);
+                let to = to + Vector2::new(draw(-0.3, 0.3), draw(-0.3, 0.3));
+                let heights = [draw(3.0, 7.0), draw(3.0, 7.0)];
+                crate::testing::line(
+                    Point3::new(from.x, from.y, heights[0]),
+                    Point3::new(to.x, to.y, heights[1]),
+                )
+            });
+            let index = LineIndex::new(lines.map(|l| l.segment).collect());
+            let [left, right] = [[-1.0, 0.3, 2.0], [1.0, 0.0, 2.0]].map(|normal| {
+                let middle = Point3::new(0.0, 0.0, 5.0);
+                Plane::from_point_normal(&middle, &Vector3::from(normal)).unwrap()
+            });
+            let pieces = ((b - a).norm() / 0.25).ceil().max(1.0);
+            let at = |k: f64| a + (b - a) * (k / pieces);
+            let share = |k: usize| {
+                let middle = at(k as f64 + 0.5);
+                let whole = index.along_part([&a, &b], [a, b]);
+                let piece = CellBorder {
+                    full: 1.0,
+                    registered: 0.0,
+                    heights: whole.filter_map(|l| height_at(&middle, l)).collect(),
+                    ends: [at(k as f64), at((k + 1) as f64)],
+                };
+                piece.share(Some(&left), Some(&right))
+            };
+            let expected = (0..pieces as usize).map(share).sum::<f64>() / pieces;
+            let found = side_share(&index, [&a, &b], 0.25, Some(&left), Some(&right));
+            assert_eq!(found, expected, "{a} {b}");
+            supported += u32::from(expected < 0.9);
+        }
+        assert!(supported > 50, "{supported}");
     }
 }

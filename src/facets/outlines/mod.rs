@@ -31,10 +31,12 @@ mod moves;
 mod rings;
 mod ways;
 
+use std::collections::BTreeSet;
+
 use self::area::PlanArea;
 pub(super) use self::energy::OutlineEnergy;
-use self::moves::KnownMoves;
-use self::rings::Rings;
+use self::moves::{KnownMoves, Move};
+use self::rings::{Chain, Rings};
 use super::delineation::{Delineation, Outline};
 use crate::geometry::bounds;
 
@@ -51,21 +53,8 @@ impl OutlineEnergy<'_> {
         // rounding.
         const MOST_ROUNDS: usize = 50;
         for _ in 0..MOST_ROUNDS {
-            let mut changed = vec![false; found.outlines.len()];
-            for (chain, best) in known.best_of_chains(self, &rings, &area) {
-                // A chain knows places in the rings as they were when the round began.
-                let is_known = !chain.facets().any(|f| changed[f]);
-                if let Some(best) = best.filter(|_| is_known)
-                    && !ways::meets_others(&best.way, &chain, best.stretch, &rings)
-                {
-                    let outline = best.outline(&chain, &rings);
-                    rings.replace(&chain, best.stretch, best.between());
-                    area.change_hands(&chain, &area.inside(std::slice::from_ref(&outline)));
-                    known.forget_area(bounds(outline));
-                    chain.facets().for_each(|f| changed[f] = true);
-                }
-            }
-            if !changed.contains(&true) {
+            let best = known.best_of_chains(self, &rings, &area);
+            if !make(best, &mut rings, &mut area, &mut known) {
                 break;
             }
         }
@@ -84,6 +73,31 @@ impl OutlineEnergy<'_> {
             vertices: rings.vertices,
         }
     }
+}
+
+/// Makes the best moves of the chains, as far as they have no facet in common; false where none is
+/// made.
+fn make(
+    best: Vec<(Chain, Option<Move>)>,
+    rings: &mut Rings,
+    area: &mut PlanArea,
+    known: &mut KnownMoves,
+) -> bool {
+    let mut changed = BTreeSet::new();
+    for (chain, best) in best {
+        // A chain knows places in the rings as they were when the round began.
+        let is_known = !chain.facets().any(|f| changed.contains(&f));
+        if let Some(best) = best.filter(|_| is_known)
+            && !ways::meets_others(&best.way, &chain, best.stretch, rings)
+        {
+            let outline = best.outline(&chain, rings);
+            rings.replace(&chain, best.stretch, best.between());
+            area.change_hands(&chain, &area.inside(std::slice::from_ref(&outline)));
+            known.forget_area(bounds(outline));
+            changed.extend(chain.facets());
+        }
+    }
+    !changed.is_empty()
 }
 
 #[cfg(test)]
@@ -162,9 +176,29 @@ mod tests {
         };
         let found = delineate(&arrangement, &labels, &planes);
         let accepted = vec![true; found.outlines.len()];
+        assert_what_is_known_holds(&energy, &found, &accepted);
         let simple = energy.simplify(found, &accepted);
         let ring = |o: &Outline| o.outer.iter().map(|&v| simple.vertices[v]).collect();
         simple.outlines.iter().map(ring).collect()
+    }
+
+    /// In every round what is known gives the moves that rating all of them anew gives.
+    fn assert_what_is_known_holds(energy: &OutlineEnergy, found: &Delineation, accepted: &[bool]) {
+        let mut rings = Rings::new(found, accepted);
+        let labels = found.outlines.iter().map(|o| o.plane).collect();
+        let mut area = PlanArea::new(energy, labels, &rings).expect("there are rings");
+        let mut known = KnownMoves::default();
+        loop {
+            let anew = KnownMoves::default().best_of_chains(energy, &rings, &area);
+            let best = known.best_of_chains(energy, &rings, &area);
+            let moves = |all: &[(Chain, Option<Move>)]| -> Vec<Option<Move>> {
+                all.iter().map(|(_, best)| best.clone()).collect()
+            };
+            assert_eq!(moves(&best), moves(&anew));
+            if !make(best, &mut rings, &mut area, &mut known) {
+                break;
+            }
+        }
     }
 
     fn area(ring: &[Point2<f64>]) -> f64 {

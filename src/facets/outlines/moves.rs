@@ -23,7 +23,7 @@ const PIECE_M: f64 = 0.25;
 const ROUNDING_NATS: f64 = 1e-6;
 
 /// A simpler way between two vertices of a chain.
-#[derive(Clone)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Move {
     /// From this vertex of the chain to that one.
     pub stretch: [usize; 2],

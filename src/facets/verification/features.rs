@@ -80,13 +80,13 @@ impl Measured {
 /// cover it, inside it, in standard deviations. A level plane through the ridges of two roofs has
 /// more edges than the roof between them, and little else.
 fn rival_margin(competing: &CompetingPlanes, outline: &Outline, inside: &InteriorWindows) -> f64 {
-    let area = |plane: u32| -> f64 {
-        let evidence = (outline.cells.iter()).filter_map(|&c| competing.evidence.get(c, plane));
-        evidence.map(|e| e.area).sum()
-    };
-    let most = ALMOST_ALL * area(outline.plane);
+    let mut areas = vec![0.0; competing.planes.len()];
+    for (plane, evidence) in (outline.cells.iter()).flat_map(|&c| competing.evidence.of_cell(c)) {
+        areas[*plane as usize] += evidence.area;
+    }
+    let most = ALMOST_ALL * areas[outline.plane as usize];
     let others = (0..competing.planes.len() as u32).filter(|p| *p != outline.plane);
-    let rivals = others.filter(|p| area(*p) >= most);
+    let rivals = others.filter(|p| areas[*p as usize] >= most);
     let advantages = rivals.map(|p| inside.advantage_of(&competing.maps[p as usize]));
     -advantages.fold(-NO_RIVAL, larger)
 }
