@@ -213,11 +213,11 @@ mod tests {
         let mut draw = |low: f64, high: f64| low + (high - low) * next();
         let shape = [
             [0.0, 0.0],
-            [9.0, 1.0],
-            [8.0, 4.0],
-            [4.0, 3.0],
-            [3.5, 8.0],
-            [-1.0, 7.0],
+            [9.0, 1.2],
+            [8.0, 4.3],
+            [4.0, 3.1],
+            [3.5, 8.4],
+            [-1.0, 7.3],
         ];
         let roofs: Vec<Facet> = (0..12)
             .map(|_| {
@@ -245,6 +245,6 @@ mod tests {
             );
             hidden += u32::from(expected);
         }
-        assert!((500..1500).contains(&hidden), "{hidden}");
+        assert!((200..1800).contains(&hidden), "{hidden}");
     }
 }

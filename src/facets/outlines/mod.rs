@@ -189,12 +189,14 @@ mod tests {
         let mut area = PlanArea::new(energy, labels, &rings).expect("there are rings");
         let mut known = KnownMoves::default();
         loop {
-            let anew = KnownMoves::default().best_of_chains(energy, &rings, &area);
+            let mut fresh = KnownMoves::default();
+            let anew = fresh.best_of_chains(energy, &rings, &area);
             let best = known.best_of_chains(energy, &rings, &area);
             let moves = |all: &[(Chain, Option<Move>)]| -> Vec<Option<Move>> {
                 all.iter().map(|(_, best)| best.clone()).collect()
             };
             assert_eq!(moves(&best), moves(&anew));
+            assert_eq!(known.areas(), fresh.areas());
             if !make(best, &mut rings, &mut area, &mut known) {
                 break;
             }
@@ -242,6 +244,13 @@ mod tests {
         assert!((total - 84.0).abs() < 1e-6, "{total}");
         let shared = found[0].iter().filter(|p| found[1].contains(p)).count();
         assert_eq!(shared, 2);
+    }
+
+    #[test]
+    fn a_jog_between_two_roofs_goes() {
+        let beside = ([10.0, 0.0], [16.0, 6.0], 1);
+        let found = outlines(&[beside, ([9.6, 2.0], [10.0, 4.0], 1)], 0.0);
+        assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [4, 4]);
     }
 
     #[test]

@@ -109,6 +109,12 @@ impl KnownMoves {
         chains.into_iter().zip(best).map(keep).collect()
     }
 
+    /// What the views say of all moves.
+    #[cfg(test)]
+    pub(super) fn areas(&self) -> Vec<Option<f64>> {
+        self.chains.values().flatten().map(|m| m.area).collect()
+    }
+
     /// Within a box samples changed hands.
     pub(super) fn forget_area(&mut self, changed: [Point2<f64>; 2]) {
         self.changed.push(changed);
