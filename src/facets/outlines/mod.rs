@@ -38,7 +38,6 @@ pub(super) use self::energy::OutlineEnergy;
 use self::moves::{KnownMoves, Move};
 use self::rings::{Chain, Rings};
 use super::delineation::{Delineation, Outline};
-use crate::geometry::bounds;
 
 impl OutlineEnergy<'_> {
     /// The outlines, those that are `accepted` with the corners of least energy.
@@ -92,8 +91,7 @@ fn make(
         {
             let outline = best.outline(&chain, rings);
             rings.replace(&chain, best.stretch, best.between());
-            area.change_hands(&chain, &area.inside(std::slice::from_ref(&outline)));
-            known.forget_area(bounds(outline));
+            known.change_hands(area, &chain, outline);
             changed.extend(chain.facets());
         }
     }
@@ -177,9 +175,29 @@ mod tests {
         let found = delineate(&arrangement, &labels, &planes);
         let accepted = vec![true; found.outlines.len()];
         assert_what_is_known_holds(&energy, &found, &accepted);
+        assert_area_is_summed_again(&energy, &found, &accepted);
         let simple = energy.simplify(found, &accepted);
         let ring = |o: &Outline| o.outer.iter().map(|&v| simple.vertices[v]).collect();
         simple.outlines.iter().map(ring).collect()
+    }
+
+    /// When area changes hands, what is known of the moves across it does not hold, although all
+    /// vertices are as they were.
+    fn assert_area_is_summed_again(energy: &OutlineEnergy, found: &Delineation, accepted: &[bool]) {
+        let rings = Rings::new(found, accepted);
+        let labels = found.outlines.iter().map(|o| o.plane).collect();
+        let mut area = PlanArea::new(energy, labels, &rings).expect("there are rings");
+        let mut known = KnownMoves::default();
+        let mut best = known.best_of_chains(energy, &rings, &area).into_iter();
+        let Some((chain, best)) = best.find_map(|(chain, best)| Some((chain, best?))) else {
+            return;
+        };
+        let outline = best.outline(&chain, &rings);
+        known.change_hands(&mut area, &chain, outline);
+        known.best_of_chains(energy, &rings, &area);
+        let mut anew = KnownMoves::default();
+        anew.best_of_chains(energy, &rings, &area);
+        assert_eq!(known.areas(), anew.areas());
     }
 
     /// In every round what is known gives the moves that rating all of them anew gives.

@@ -115,9 +115,16 @@ impl KnownMoves {
         self.chains.values().flatten().map(|m| m.area).collect()
     }
 
-    /// Within a box samples changed hands.
-    pub(super) fn forget_area(&mut self, changed: [Point2<f64>; 2]) {
-        self.changed.push(changed);
+    /// Gives the area within an outline to the other facet of a chain; what the views say of moves
+    /// across it is no longer known.
+    pub(super) fn change_hands(
+        &mut self,
+        area: &mut PlanArea,
+        chain: &Chain,
+        outline: Vec<Point2<f64>>,
+    ) {
+        area.change_hands(chain, &area.inside(std::slice::from_ref(&outline)));
+        self.changed.push(bounds(outline));
     }
 }
 
