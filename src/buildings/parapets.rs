@@ -21,8 +21,8 @@ use crate::scene::Scene;
 const HIGHEST_M: f64 = 1.2;
 /// Two vertices at one place are no farther apart, metres.
 const SAME_PLACE: f64 = 0.01;
-/// Finest cell, metres, as where facets are found.
-const FINEST_CELL: f64 = 0.06;
+/// Least distance of samples, metres, as where facets are found.
+const FINEST_SAMPLE: f64 = 0.06;
 
 /// A roof that lies below the edges that bound it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -42,8 +42,9 @@ pub(super) fn below_parapets(scene: &Scene, facets: &[Facet]) -> (Vec<Facet>, Ve
     };
     let pixels = scene.views.iter().map(|v| v.camera.ground_pixel(middle));
     let pixel = pixels.fold(f64::INFINITY, f64::min);
-    let step = pixel.max(FINEST_CELL);
-    let reduced = scene.reduced(((step / pixel) as usize).max(1));
+    let sample = pixel.max(FINEST_SAMPLE);
+    let reduced = scene.reduced(((sample / pixel) as usize).max(1));
+    let step = PlanGrid::cell_of_pixels(sample);
     let found = crate::execution::map(facets, |i, facet| {
         let others: Vec<Facet> = (facets.iter().enumerate())
             .filter(|(j, _)| i != *j)
@@ -104,8 +105,8 @@ fn parapet_of(
         image.is_some_and(|x| scene.camera(*v).contains(&x, 0.0)) && !hidden(*v, &place)
     });
     let views = views.count().min(MAX_VIEWS);
-    // A cell between the two views farthest apart.
-    let apart = step / largest_slope(scene, &place, &hidden);
+    // A sample between the two views farthest apart.
+    let apart = grid.of_samples().step / largest_slope(scene, &place, &hidden);
     let lowest = (HIGHEST_M / apart).ceil() as usize;
     let reach = (table.highest_m / apart).ceil() as usize;
     // The likelihoods of the heights by window, from the lowest to the highest.

@@ -36,7 +36,8 @@ pub(crate) struct ImageEvidence<'s> {
 }
 
 impl<'s> ImageEvidence<'s> {
-    /// Of a scene with its segments; `reduced` has pixels about `step_m` metres wide.
+    /// Of a scene with its segments; the windows have cells of `step_m` metres, `reduced`
+    /// pixels about as far apart as their samples.
     pub(crate) fn new(
         scene: &'s Scene,
         reduced: &'s Scene,

@@ -44,6 +44,7 @@ use crate::ids::{LineId, ProposalOrigin};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::{Line3d, Observation, Side};
 use crate::params::{Lines3dParams, RoofParams};
+use crate::photoconsistency::PlanGrid;
 use crate::planes::ProposedPlane;
 use crate::scene::Scene;
 
@@ -140,9 +141,10 @@ pub fn coplanar_sets(
         return Default::default();
     };
     let pixel = scene.median_ground_pixel(&middle).unwrap_or(FINEST_STEP);
-    let step = pixel.max(FINEST_STEP);
-    let reduced = scene.reduced(((step / pixel).round() as usize).max(1));
-    let images = ImageEvidence::new(scene, &reduced, step, segments, roof);
+    let sample = pixel.max(FINEST_STEP);
+    let reduced = scene.reduced(((sample / pixel).round() as usize).max(1));
+    let cell = PlanGrid::cell_of_pixels(sample);
+    let images = ImageEvidence::new(scene, &reduced, cell, segments, roof);
     let space = LineSpace::new(lines, pixel);
     let sets = coplanar_line_sets(&space, &images);
     let slopes = slopes_across_ridges(&space, &sets);

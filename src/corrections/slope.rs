@@ -28,9 +28,9 @@ use crate::planes::Posterior;
 use crate::scene::Scene;
 
 /// Finest cell of the windows, metres: as where planes compete.
-const FINEST_CELL_M: f64 = 0.06;
+const FINEST_CELL_M: f64 = 0.12;
 /// Most cells of the windows; of a larger half they are coarser.
-const MOST_CELLS: f64 = 20_000.0;
+const MOST_CELLS: f64 = 5000.0;
 /// Samples of theta in the first step of the sweep: at a decimetre a pixel a side 5 m from the edge
 /// moves by about one between two of them.
 const SAMPLES_IN_STEP: usize = 10;
@@ -162,13 +162,14 @@ struct Windows {
 impl Windows {
     fn new(scene: &Scene, half: &Facet) -> Option<Self> {
         let pixel_m = scene.median_ground_pixel(&mean_point(&half.outer))?;
-        let step = (pixel_m.max(FINEST_CELL_M)).max((half.plan_area() / MOST_CELLS).sqrt());
+        let step = (PlanGrid::cell_of_pixels(pixel_m).max(FINEST_CELL_M))
+            .max((half.plan_area() / MOST_CELLS).sqrt());
         let [min, max] = half.plan_bounds();
         let grid = PlanGrid::covering(min, max, step);
         let at = |k: usize| grid.center(k % grid.width, k / grid.width);
         let cells = 0..grid.width * grid.height;
         Some(Self {
-            scene: scene.reduced(((step / pixel_m) as usize).max(1)),
+            scene: scene.reduced(((grid.of_samples().step / pixel_m) as usize).max(1)),
             cells: cells.filter(|&k| inside(&half.outer, &at(k))).collect(),
             grid,
         })

@@ -12,7 +12,7 @@ const MOST_LEVELS: usize = 96;
 
 /// The height of the best level at the middle of every cell of `coarse`, between two heights by
 /// steps that move the images by a pixel against each other; `None` where fewer than two views see
-/// it. `step` is the distance of the positions compared, metres.
+/// it. `step` is the size of the cells compared, metres.
 pub(super) fn best_levels(
     scene: &Scene,
     coarse: &PlanGrid,

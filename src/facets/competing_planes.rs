@@ -23,7 +23,7 @@ pub(super) struct CompetingPlanes {
     pub index: LineIndex,
     /// How the views agree on each plane.
     pub maps: Vec<ConsistencyMap>,
-    /// With pixels about as wide as the cells of the maps.
+    /// With pixels about as wide as the samples of the maps' cells are apart.
     pub scene: Scene,
 }
 

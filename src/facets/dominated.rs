@@ -14,7 +14,7 @@ use crate::planes::PlaneHypothesis;
 /// scenes nothing.
 pub(super) const PLANE_NATS: f64 = 2.0;
 /// Positions this far apart, metres, tell what windows of a metre say.
-const SPACING: f64 = 0.25;
+const SPACING: f64 = 0.35;
 
 /// The hypotheses, in their order, that say more than their price which no stronger one says.
 pub(super) fn without_dominated(

@@ -47,8 +47,9 @@ pub(super) struct PlaneEvidence {
 }
 
 impl PlaneEvidence {
-    /// Sums each hypothesis' consistency map over the cells; `ground` are the maps of the ground
-    /// plane at a few heights, over `grid`.
+    /// Sums each hypothesis' consistency map over the cells of the arrangement, by the samples that
+    /// lie in them: where borders cut a cell of the map, each sample counts for the side that it is
+    /// on. `ground` are the maps of the ground plane at a few heights, over `grid`.
     pub(super) fn collect(
         hypotheses: &[PlaneHypothesis],
         arrangement: &Arrangement,
@@ -57,6 +58,7 @@ impl PlaneEvidence {
         windows: &ShiftableWindows,
         cloud: Option<&CloudEvidence>,
     ) -> Self {
+        let grid = &grid.of_samples();
         let raster = arrangement.raster(grid);
         let ground = match ground {
             Some(map) => ground_evidence(map, windows, &raster, arrangement.cells),
@@ -179,16 +181,23 @@ fn ground_evidence(
     raster: &[u32],
     cells: usize,
 ) -> Vec<f64> {
-    let area = map.grid.step * map.grid.step;
+    let samples = map.grid.of_samples();
+    let area = samples.step * samples.step;
     let mut evidence = vec![0.0f64; cells];
-    for (k, &cell) in raster.iter().enumerate().filter(|(_, c)| **c != u32::MAX) {
+    for k in 0..map.grid.width * map.grid.height {
         let at = [k % map.grid.width, k / map.grid.width];
-        let observed = windows.evidence_at(map, at);
-        evidence[cell as usize] += observed.nats_with_prior() * area;
+        let observed = windows.evidence_at(map, at).nats_with_prior();
+        for [column, row] in map.grid.samples_of(at) {
+            let cell = raster[row * samples.width + column];
+            if cell != u32::MAX {
+                evidence[cell as usize] += observed * area;
+            }
+        }
     }
     evidence.into_iter().map(|nats| larger(nats, 0.0)).collect()
 }
 
+/// Sums over the cells of the arrangement, of which `raster` says where the samples `grid` lie.
 fn sum_over_cells(
     hypothesis: &PlaneHypothesis,
     windows: &ShiftableWindows,
@@ -198,10 +207,11 @@ fn sum_over_cells(
 ) -> BTreeMap<usize, CellEvidence> {
     let (map, region) = (&hypothesis.map, &hypothesis.region);
     let window = &map.grid;
-    let (dc, dr) = window.offset_in(grid);
+    let samples = window.of_samples();
+    let (dc, dr) = samples.offset_in(grid);
     let area = grid.step * grid.step;
     let mut cells = BTreeMap::<usize, CellEvidence>::new();
-    // Positions one after the other mostly lie in one cell.
+    // Samples one after the other mostly lie in one cell.
     const NO_CELL: usize = usize::MAX;
     let store = |cells: &mut BTreeMap<_, _>, (cell, evidence)| {
         if cell != NO_CELL {
@@ -209,38 +219,45 @@ fn sum_over_cells(
         }
     };
     let mut run = (NO_CELL, CellEvidence::default());
+    let within =
+        |at: usize, d: isize, size: usize| at.checked_add_signed(d).filter(|moved| *moved < size);
     for row in 0..window.height {
-        let of_region = region.row(window.center(0, row).y);
+        let rows = window.samples_of([0, row]).map(|[_, row]| row);
+        let of_region = rows.map(|row| region.row(samples.center(0, row).y));
         for column in 0..window.width {
-            let (c, r) = (column as isize + dc, row as isize + dr);
-            if c < 0 || r < 0 || c as usize >= grid.width || r as usize >= grid.height {
-                continue;
-            }
-            let cell = raster[r as usize * grid.width + c as usize];
             let k = row * window.width + column;
             let single_view = hypothesis.single_view.at(k);
-            let place = window.center(column, row);
-            if cell == u32::MAX || !of_region.contains(place.x) {
+            if map.weight(k) == 0.0 && single_view == 0.0 && cloud.is_none() {
                 continue;
             }
-            let of_cloud = cloud.map_or(0.0, |cloud| cloud.nats_at(&place));
-            if map.weight(k) == 0.0 && single_view == 0.0 && of_cloud == 0.0 {
-                continue;
-            }
-            let cell = cell as usize;
-            if run.0 != cell {
-                store(&mut cells, run);
-                run = (cell, cells.get(&cell).copied().unwrap_or_default());
-            }
-            let e = &mut run.1;
-            e.single_view += single_view * area;
-            e.cloud += of_cloud * area;
             let observed = windows.evidence_at(map, [column, row]);
-            let weight = observed.weight * area;
-            e.area += area;
-            e.weight += weight;
-            e.correlation += weight * observed.correlation;
-            e.nats += observed.nats_with_prior() * area;
+            let at = window.samples_of([column, row]);
+            for ([column, row], of_region) in at.into_iter().zip(&of_region) {
+                let place = samples.center(column, row);
+                let in_grid = within(column, dc, grid.width).zip(within(row, dr, grid.height));
+                let Some((c, r)) = in_grid.filter(|_| of_region.contains(place.x)) else {
+                    continue;
+                };
+                let cell = raster[r * grid.width + c];
+                let of_cloud = cloud.map_or(0.0, |cloud| cloud.nats_at(&place));
+                let unseen = map.weight(k) == 0.0 && single_view == 0.0 && of_cloud == 0.0;
+                if cell == u32::MAX || unseen {
+                    continue;
+                }
+                let cell = cell as usize;
+                if run.0 != cell {
+                    store(&mut cells, run);
+                    run = (cell, cells.get(&cell).copied().unwrap_or_default());
+                }
+                let e = &mut run.1;
+                e.single_view += single_view * area;
+                e.cloud += of_cloud * area;
+                let weight = observed.weight * area;
+                e.area += area;
+                e.weight += weight;
+                e.correlation += weight * observed.correlation;
+                e.nats += observed.nats_with_prior() * area;
+            }
         }
     }
     store(&mut cells, run);

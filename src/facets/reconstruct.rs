@@ -115,7 +115,7 @@ pub fn reconstruct_facets(
         .iter()
         .map(|v| v.camera.ground_pixel(&lines[0].at(0.5)))
         .fold(f64::INFINITY, f64::min);
-    let reduced = scene.reduced(((grid.step / fine) as usize).max(1));
+    let reduced = scene.reduced(((grid.of_samples().step / fine) as usize).max(1));
     // Both compare the views on planes, independently of each other: one map.
     let ground_map = ground_map(&reduced, ground, &grid);
     let hypotheses = plane_hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
@@ -211,7 +211,8 @@ fn lies_on_ground(
     members.all(|m| ground.is_near(line(m), params.min_height_m))
 }
 
-/// The plan grid of the whole scene: the ground pixel as cell, the regions of all groups as window.
+/// The plan grid of the whole scene: samples a ground pixel apart, the regions of all groups as
+/// window.
 fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[PlanRegion]) -> Option<PlanGrid> {
     let middle = lines.get(lines.len() / 2)?.at(0.5);
     let mut steps: Vec<f64> = scene
@@ -219,11 +220,11 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[PlanRegion]) -> Optio
         .iter()
         .map(|v| v.camera.ground_pixel(&middle))
         .collect();
-    let step = crate::math::median(&mut steps)?;
+    let step = PlanGrid::cell_of_pixels(crate::math::median(&mut steps)?);
     let [min, max] = bounds(regions.iter().flat_map(PlanRegion::bounds));
     let size = max - min;
-    // Coarser cells for a very large window: at most 36 million.
-    let step = step.max(FINEST_CELL).max((size.x * size.y / 36e6).sqrt());
+    // Coarser cells for a very large window: at most 9 million.
+    let step = step.max(FINEST_CELL).max((size.x * size.y / 9e6).sqrt());
     (size.x > 0.0 && size.y > 0.0 && step.is_finite()).then(|| PlanGrid::covering(min, max, step))
 }
 
@@ -238,9 +239,9 @@ fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Sharded<Option
     Ok(ConsistencyMap::best_of(&maps))
 }
 
-/// Finest cell, metres. Assumption: what a roof's border lines can be told apart by; sharper images
-/// are reduced.
-const FINEST_CELL: f64 = 0.06;
+/// Finest cell, metres. Assumption: samples 6 cm apart are what a roof's border lines can be told
+/// apart by; sharper images are reduced.
+const FINEST_CELL: f64 = 0.12;
 
 /// The borders and a frame around the window, so that every cell that matters is closed.
 fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {

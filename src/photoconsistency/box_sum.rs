@@ -5,9 +5,10 @@
 
 use super::plan_grid::PlanGrid;
 
-/// Half the window side in cells: 11 x 11, a little smaller than the paper's 15 x 15, since its
-/// windows lie along lines and these must not reach far over the borders of small facets.
-pub(crate) const HALF_WINDOW: usize = 5;
+/// Half the window side in cells: 5 x 5 cells of 2 x 2 samples, a little smaller than the paper's
+/// 15 x 15 pixels, since its windows lie along lines and these must not reach far over the borders
+/// of small facets.
+pub(crate) const HALF_WINDOW: usize = 2;
 /// Side of a window, cells.
 pub(crate) const WINDOW: usize = 2 * HALF_WINDOW + 1;
 /// Cells of a window.
@@ -71,12 +72,11 @@ impl BoxSum {
     }
 }
 
-/// Sums of 11 neighbours in a row, by doubling: 2, 4, 8, 8 + 2 + 1. No sum waits for the one before
-/// it, so the compiler adds many at once.
+/// Sums of five neighbours in a row, as 2 + 2 + 1. No sum waits for the one before it, so the
+/// compiler adds many at once.
 pub(crate) struct RowSum {
     padded: Vec<f32>,
     two: Vec<f32>,
-    four: Vec<f32>,
 }
 
 impl RowSum {
@@ -86,7 +86,6 @@ impl RowSum {
         Self {
             padded: vec![0.0; n],
             two: vec![0.0; n],
-            four: vec![0.0; n],
         }
     }
 
@@ -97,23 +96,15 @@ impl RowSum {
     }
 
     fn sum(&mut self, out: &mut [f32]) {
-        const { assert!(2 * HALF_WINDOW + 1 == 8 + 2 + 1) };
+        const { assert!(WINDOW == 2 + 2 + 1) };
         let n = self.padded.len();
         let p = &self.padded[..n];
         for ((t, a), b) in self.two[..n - 1].iter_mut().zip(p).zip(&p[1..]) {
             *t = a + b;
         }
-        for ((f, a), b) in self.four[..n - 3]
-            .iter_mut()
-            .zip(&self.two)
-            .zip(&self.two[2..])
-        {
-            *f = a + b;
-        }
-        let fours = self.four.iter().zip(&self.four[4..]);
-        let rest = self.two[8..].iter().zip(&p[10..]);
-        for ((o, (a, b)), (c, d)) in out.iter_mut().zip(fours).zip(rest) {
-            *o = (a + b) + (c + d);
+        let twos = self.two.iter().zip(&self.two[2..]);
+        for ((o, (a, b)), c) in out.iter_mut().zip(twos).zip(&p[4..]) {
+            *o = (a + b) + c;
         }
     }
 }

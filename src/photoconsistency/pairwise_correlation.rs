@@ -8,14 +8,13 @@ use wide::f32x8;
 
 use super::box_sum::{BoxSum, HALF_WINDOW, RowSum, WINDOW_CELLS};
 use super::consistency_map::{ConsistencyMap, MAX_VIEWS};
-use super::plan_grid::PlanGrid;
+use super::plan_grid::{CELL_SAMPLES, PlanGrid, SampledCells};
 use crate::math::larger;
 
-/// Compares orthophotos on `grid` (row by row, NaN where a view does not reach), at most
-/// [`MAX_VIEWS`]; `residual_variance` is the variance by which the grey values of the views differ
+/// Compares orthophotos on `grid`, at most [`MAX_VIEWS`]; `residual_variance` is the variance by which the grey values of the views differ
 /// at random.
 pub(super) fn correlate_views(
-    photos: impl Iterator<Item = Vec<f32>>,
+    photos: impl Iterator<Item = SampledCells>,
     residual_variance: f32,
     grid: &PlanGrid,
 ) -> ConsistencyMap {
@@ -60,6 +59,10 @@ pub(super) fn correlate_views(
 
 /// Least variance that is not the rounding of a constant.
 pub(super) const LEAST_VARIANCE: f32 = 1e-7;
+/// Samples of a window.
+const WINDOW_SAMPLES: f32 = WINDOW_CELLS * SAMPLES as f32;
+/// Samples of a cell.
+const SAMPLES: usize = CELL_SAMPLES * CELL_SAMPLES;
 /// Cells per SIMD register.
 const LANES: usize = 8;
 /// Pairs of [`MAX_VIEWS`] views.
@@ -76,7 +79,7 @@ fn unseen_row(grid: &PlanGrid) -> Vec<f32> {
 struct ViewWindows {
     width: usize,
     /// Centred; 0 where the view does not reach.
-    gray: Vec<f32>,
+    gray: SampledCells,
     /// Where the view reaches, when that is not everywhere.
     reach: Option<Reach>,
     sum: BoxSum,
@@ -90,27 +93,24 @@ struct ViewWindows {
 
 /// Which cells a view reaches, and how many in the windows of a row.
 struct Reach {
-    /// 1 where it does, 0 elsewhere.
+    /// 1 where it reaches all samples of the cell, 0 elsewhere.
     inside: Vec<f32>,
     count: BoxSum,
 }
 
 impl ViewWindows {
-    fn new(mut gray: Vec<f32>, grid: &PlanGrid) -> Self {
+    fn new(mut gray: SampledCells, grid: &PlanGrid) -> Self {
+        let cells = grid.width * grid.height;
+        let is_cut = |samples: &Vec<f32>| samples.iter().fold(false, |cut, g| cut | g.is_nan());
         // Centring keeps the running sums of squares small.
-        let (sum, n) = gray
-            .iter()
-            .filter(|g| !g.is_nan())
-            .fold((0.0f64, 0usize), |(s, n), &g| (s + f64::from(g), n + 1));
-        let center = if n > 0 { (sum / n as f64) as f32 } else { 0.0 };
-        let reach = (n < gray.len()).then(|| Reach {
-            inside: (gray.iter())
-                .map(|g| if g.is_nan() { 0.0 } else { 1.0 })
+        let center = mean_of_seen(&gray[0]);
+        let reach = gray.iter().any(is_cut).then(|| Reach {
+            inside: (0..cells)
+                .map(|k| f32::from(u8::from(gray.iter().all(|g| !g[k].is_nan()))))
                 .collect(),
             count: BoxSum::new(grid),
         });
-        gray.iter_mut()
-            .for_each(|g| *g = if g.is_nan() { 0.0 } else { *g - center });
+        (gray.iter_mut().flatten()).for_each(|g| *g = if g.is_nan() { 0.0 } else { *g - center });
         Self {
             width: grid.width,
             gray,
@@ -123,25 +123,29 @@ impl ViewWindows {
         }
     }
 
-    fn row(&self, y: usize) -> &[f32] {
-        &self.gray[y * self.width..(y + 1) * self.width]
+    /// The samples of a row of cells.
+    fn row(&self, y: usize) -> [&[f32]; SAMPLES] {
+        row_of(&self.gray, y, self.width)
     }
 
     /// Goes on to row `y`, the next one.
     fn next_row(&mut self, y: usize, line: &mut RowSum, grid: &PlanGrid) {
         let (w, gray) = (self.width, &self.gray);
-        let row_of = |y: usize| &gray[y * w..(y + 1) * w];
-        let sums = (self.sum).next_row(line, |y, out| out.copy_from_slice(row_of(y)));
-        for (mean, sum) in self.mean.iter_mut().zip(sums) {
-            *mean = sum / WINDOW_CELLS;
-        }
-        let squares = self.squares.next_row(line, |y, out| {
-            for (o, g) in out.iter_mut().zip(row_of(y)) {
-                *o = g * g;
+        let sums = (self.sum).next_row(line, |y, out| {
+            let [a, b, c, d] = row_of(gray, y, w);
+            for ((((o, a), b), c), d) in out.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+                *o = (a + b) + (c + d);
             }
         });
+        for (mean, sum) in self.mean.iter_mut().zip(sums) {
+            *mean = sum / WINDOW_SAMPLES;
+        }
+        let squares = self.squares.next_row(line, |y, out| {
+            let row = row_of(gray, y, w);
+            products(row, row, out);
+        });
         for ((v, sum), m) in self.variance.iter_mut().zip(squares).zip(&self.mean) {
-            *v = larger(sum / WINDOW_CELLS - m * m, 0.0);
+            *v = larger(sum / WINDOW_SAMPLES - m * m, 0.0);
         }
         if let Some(reach) = &mut self.reach {
             let inside = &reach.inside;
@@ -168,6 +172,34 @@ impl ViewWindows {
     }
 }
 
+/// Mean of the values that are numbers; 0 without any.
+fn mean_of_seen(values: &[f32]) -> f32 {
+    let (mut sums, mut seen) = ([0.0f64; LANES], [0u32; LANES]);
+    for values in values.chunks(LANES) {
+        for ((sum, seen), v) in sums.iter_mut().zip(&mut seen).zip(values) {
+            let number = !v.is_nan();
+            *sum += if number { f64::from(*v) } else { 0.0 };
+            *seen += u32::from(number);
+        }
+    }
+    let seen = seen.iter().sum::<u32>().max(1);
+    (sums.iter().sum::<f64>() / f64::from(seen)) as f32
+}
+
+/// The samples of a row of cells, each `width` wide.
+fn row_of(gray: &SampledCells, y: usize, width: usize) -> [&[f32]; SAMPLES] {
+    gray.each_ref().map(|g| &g[y * width..(y + 1) * width])
+}
+
+/// For every cell of a row the sum of the products of two views' samples.
+fn products(a: [&[f32]; SAMPLES], b: [&[f32]; SAMPLES], out: &mut [f32]) {
+    let n = out.len();
+    let ([a0, a1, a2, a3], [b0, b1, b2, b3]) = (a.map(|a| &a[..n]), b.map(|b| &b[..n]));
+    for (k, o) in out.iter_mut().enumerate() {
+        *o = (a0[k] * b0[k] + a1[k] * b1[k]) + (a2[k] * b2[k] + a3[k] * b3[k]);
+    }
+}
+
 /// Two views, with their correlation over the windows around the cells of a row.
 struct PairWindows {
     of: [usize; 2],
@@ -188,16 +220,12 @@ impl PairWindows {
     /// Goes on to the row of the views.
     fn next_row(&mut self, views: &[ViewWindows], line: &mut RowSum) {
         let [a, b] = self.of.map(|v| &views[v]);
-        let sums = self.products.next_row(line, |y, out| {
-            for ((o, x), y) in out.iter_mut().zip(a.row(y)).zip(b.row(y)) {
-                *o = x * y;
-            }
-        });
+        let sums = (self.products).next_row(line, |y, out| products(a.row(y), b.row(y), out));
         let means = a.mean.iter().zip(&b.mean);
         let inverses = a.inverse_deviation.iter().zip(&b.inverse_deviation);
         let row = self.row.iter_mut().zip(sums);
         for (((c, sum), (mean_a, mean_b)), (by_a, by_b)) in row.zip(means).zip(inverses) {
-            let r = (sum / WINDOW_CELLS - mean_a * mean_b) * (by_a * by_b);
+            let r = (sum / WINDOW_SAMPLES - mean_a * mean_b) * (by_a * by_b);
             *c = if r.is_nan() {
                 UNSEEN
             } else {
@@ -390,27 +418,31 @@ mod tests {
             width: 37,
             height: 30,
         };
-        let whole: Vec<f32> = (0..37 * 30).map(|k| noise(k, 0)).collect();
-        // Of half the contrast, and only from column 12 on.
-        let part = |k: usize| {
-            if k % 37 >= 12 {
-                0.2 + 0.5 * whole[k]
-            } else {
-                f32::NAN
-            }
+        let samples = |seed: usize| -> SampledCells {
+            std::array::from_fn(|at| (0..37 * 30).map(|k| noise(k, seed + at)).collect())
         };
-        let part: Vec<f32> = (0..37 * 30).map(part).collect();
-        let other: Vec<f32> = (0..37 * 30).map(|k| noise(k, 5)).collect();
+        let (whole, other) = (samples(0), samples(5));
+        // Of half the contrast, and only from column 12 on.
+        let part = whole.each_ref().map(|samples| -> Vec<f32> {
+            let of_column = |(k, v): (usize, &f32)| {
+                if k % 37 >= 12 {
+                    0.2 + 0.5 * v
+                } else {
+                    f32::NAN
+                }
+            };
+            samples.iter().enumerate().map(of_column).collect()
+        });
         let map = correlate_views([whole.clone(), part].into_iter(), 1e-4, &grid);
         for k in 0..37 * 30 {
             let (x, y) = (k % 37, k / 37);
-            let seen = (17..32).contains(&x) && (5..25).contains(&y);
+            let seen = (14..35).contains(&x) && (2..28).contains(&y);
             assert_eq!(map.weight(k) > 0.0, seen, "at {x}, {y}");
             assert_eq!(map.correlation(k), if seen { 1.0 } else { 0.0 });
         }
         let map = correlate_views([whole, other].into_iter(), 1e-4, &grid);
         for k in 0..37 * 30 {
-            let whole_window = (5..32).contains(&(k % 37)) && (5..25).contains(&(k / 37));
+            let whole_window = (2..35).contains(&(k % 37)) && (2..28).contains(&(k / 37));
             assert_eq!(map.weight(k) > 0.9, whole_window, "cell {k}");
             assert!(map.correlation(k) < 0.5);
         }

@@ -1,13 +1,22 @@
 //! The plan grid: a raster of square cells on the XY plane in which plane hypotheses are compared.
+//!
+//! A view is sampled at four positions of every cell. What is said of windows changes little from
+//! one sample to the next, so that it is kept by cell: a quarter of the sums and of the memory.
 
 use std::ops::Range;
 
-use nalgebra::{Matrix3, Point2, Point3, Vector2};
+use nalgebra::{Matrix3, Point2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
 use crate::geometry::Plane;
 use crate::raster::{Gray, Outside, Warp};
+
+/// Positions along each side of a cell at which the views are sampled.
+pub(crate) const CELL_SAMPLES: usize = 2;
+/// Grey values of a view in every cell of a plan grid, row by row, a raster for each position
+/// within the cells; NaN where the view does not reach.
+pub(crate) type SampledCells = [Vec<f32>; CELL_SAMPLES * CELL_SAMPLES];
 
 /// A window of plan positions; the centre of cell (column, row) is `origin + (column + 0.5, row +
 /// 0.5) step`.
@@ -76,6 +85,43 @@ impl PlanGrid {
         )
     }
 
+    /// The size of cells whose samples are so far apart, metres: a ground pixel.
+    pub(crate) fn cell_of_pixels(pixel_m: f64) -> f64 {
+        CELL_SAMPLES as f64 * pixel_m
+    }
+
+    /// The grid whose cells lie around the samples of this one's cells.
+    pub(crate) fn of_samples(&self) -> Self {
+        Self {
+            step: self.step / CELL_SAMPLES as f64,
+            width: self.width * CELL_SAMPLES,
+            height: self.height * CELL_SAMPLES,
+            ..*self
+        }
+    }
+
+    /// Column and row, in the grid of the samples, of those of a cell.
+    pub(crate) fn samples_of(
+        &self,
+        [column, row]: [usize; 2],
+    ) -> [[usize; 2]; CELL_SAMPLES * CELL_SAMPLES] {
+        let [c, r] = [column, row].map(|i| i * CELL_SAMPLES);
+        std::array::from_fn(|k| [c + k % CELL_SAMPLES, r + k / CELL_SAMPLES])
+    }
+
+    /// For each position within the cells the grid that has it in the middle of its cells.
+    fn at_samples(&self) -> [Self; CELL_SAMPLES * CELL_SAMPLES] {
+        std::array::from_fn(|k| {
+            let [column, row] = [k % CELL_SAMPLES, k / CELL_SAMPLES];
+            let from_middle = |i: usize| (i as f64 + 0.5) / CELL_SAMPLES as f64 - 0.5;
+            let offset = Vector2::new(from_middle(column), from_middle(row)) * self.step;
+            Self {
+                origin: self.origin + offset,
+                ..*self
+            }
+        })
+    }
+
     /// Column and row of this window's first cell in `larger`, which has the same step.
     pub(crate) fn offset_in(&self, larger: &PlanGrid) -> (isize, isize) {
         let d = (self.origin - larger.origin) / self.step;
@@ -106,10 +152,18 @@ pub(crate) fn image_from_plan(camera: &Camera, plane: &Plane) -> Matrix3<f64> {
     p * lift
 }
 
-/// The image seen from straight above under the hypothesis that the surface is `plane`: grey values
-/// on the grid, NaN where the image does not reach, or everywhere when the plane rises to the
-/// camera within the grid.
-pub(crate) fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Vec<f32> {
+/// The image seen from straight above under the hypothesis that the surface is `plane`; NaN
+/// everywhere when the plane rises to the camera within the grid.
+pub(crate) fn orthophoto(
+    gray: &Gray,
+    camera: &Camera,
+    plane: &Plane,
+    grid: &PlanGrid,
+) -> SampledCells {
+    (grid.at_samples()).map(|grid| orthophoto_at_centers(gray, camera, plane, &grid))
+}
+
+fn orthophoto_at_centers(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Vec<f32> {
     let plan_from_grid = Matrix3::new(
         grid.step,
         0.0,
@@ -131,27 +185,110 @@ pub(crate) fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &Pla
     out
 }
 
-/// The same for a surface that is no plane: `z` gives its height over a plan position, metres.
-pub(crate) fn orthophoto_of_surface(
+/// The heights of a surface that is no plane at the samples of the cells of a grid.
+pub(super) struct SurfaceHeights {
+    grid: PlanGrid,
+    /// Metres, in the order of [`SampledCells`].
+    z: SampledCells,
+}
+
+impl SurfaceHeights {
+    /// `z` gives the height over a plan position, metres.
+    pub(super) fn new(z: &dyn Fn(&Point2<f64>) -> f64, grid: &PlanGrid) -> Self {
+        let of_samples = grid.at_samples().map(|at| {
+            let cells = 0..grid.width * grid.height;
+            let height = |k: usize| z(&at.center(k % grid.width, k / grid.width)) as f32;
+            cells.map(height).collect()
+        });
+        Self {
+            grid: *grid,
+            z: of_samples,
+        }
+    }
+
+    /// The orthophoto of the surface over a part of the grid.
+    pub(super) fn orthophoto(&self, gray: &Gray, camera: &Camera, part: &PlanGrid) -> SampledCells {
+        let (first, top) = part.offset_in(&self.grid);
+        let (first, top) = (first as usize, top as usize);
+        let samples = part.at_samples();
+        std::array::from_fn(|at| {
+            let mut out = vec![f32::NAN; part.width * part.height];
+            for (row, line) in out.chunks_exact_mut(part.width).enumerate() {
+                let heights = &self.z[at][(top + row) * self.grid.width + first..][..part.width];
+                fill_row(
+                    gray,
+                    camera,
+                    &samples[at].center(0, row),
+                    part.step,
+                    heights,
+                    line,
+                );
+            }
+            out
+        })
+    }
+}
+
+/// Grey values at places along x from `start` on, `step` apart, at these heights.
+fn fill_row(
     gray: &Gray,
     camera: &Camera,
-    z: &dyn Fn(&Point2<f64>) -> f64,
-    grid: &PlanGrid,
-) -> Vec<f32> {
-    let value = |k: usize| {
-        let p = grid.center(k % grid.width, k / grid.width);
-        let x = camera.project(&Point3::new(p.x, p.y, z(&p)))?;
-        gray.sample(x.x as f32, x.y as f32)
-    };
-    let cells = 0..grid.width * grid.height;
-    cells.map(|k| value(k).unwrap_or(f32::NAN)).collect()
+    start: &Point2<f64>,
+    step: f64,
+    heights: &[f32],
+    out: &mut [f32],
+) {
+    const LANES: usize = 8;
+    let m = camera.k * camera.r;
+    let from_camera = start - camera.center.xy();
+    for (block, (heights, out)) in (heights.chunks(LANES).zip(out.chunks_mut(LANES))).enumerate() {
+        let mut image = [[f32::NAN; LANES]; 2];
+        for (lane, z) in heights.iter().enumerate() {
+            let column = (block * LANES + lane) as f64;
+            let dz = f64::from(*z) - camera.center.z;
+            let [dx, dy] = [from_camera.x + column * step, from_camera.y];
+            let [u, v, depth] = [0, 1, 2].map(|i| m[(i, 0)] * dx + m[(i, 1)] * dy + m[(i, 2)] * dz);
+            if depth > 0.0 {
+                image[0][lane] = (u / depth) as f32;
+                image[1][lane] = (v / depth) as f32;
+            }
+        }
+        let values = gray.sample_eight(image[0], image[1]).to_array();
+        out.copy_from_slice(&values[..out.len()]);
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::camera::testing::crop_camera;
-    use nalgebra::Vector3;
+    use nalgebra::{Point3, Vector3};
+
+    #[test]
+    fn a_plane_given_by_its_heights_has_the_same_orthophoto() {
+        let camera = crop_camera(100.0, -50.0, 0.3);
+        let gray = Gray::from_fn(camera.width as usize, camera.height as usize, |x, y| {
+            0.5 + 0.3 * crate::math::sin(0.1 * x as f64) as f32 + 0.001 * y as f32
+        });
+        let shown = camera.at_height(&Point2::new(300.0, 300.0), 8.0).unwrap();
+        let plane = Plane::from_point_normal(&shown, &Vector3::new(0.3, -0.1, 1.0)).unwrap();
+        let [low, high] = [-4.0, 5.0].map(|by| shown.xy() + Vector2::new(by, by));
+        let whole = PlanGrid::covering(low, high, 0.3);
+        let part = whole.part(3..21, 5..16);
+        let heights = SurfaceHeights::new(&|p| plane.z_at(p.x, p.y), &whole);
+        let by_heights = heights.orthophoto(&gray, &camera, &part);
+        let of_plane = orthophoto(&gray, &camera, &plane, &part);
+        let pairs = by_heights.iter().flatten().zip(of_plane.iter().flatten());
+        let mut compared = 0;
+        for (a, b) in pairs {
+            assert_eq!(a.is_nan(), b.is_nan());
+            if !a.is_nan() {
+                assert!((a - b).abs() < 1e-3, "{a} {b}");
+                compared += 1;
+            }
+        }
+        assert!(compared > 500, "{compared}");
+    }
 
     #[test]
     fn plan_map_agrees_with_projection() {
@@ -162,6 +299,19 @@ mod tests {
         let x = image_from_plan(&camera, &plane) * Vector3::new(4.0, 7.0, 1.0);
         let expected = camera.project(&plane.lift(4.0, 7.0)).unwrap();
         assert!((Point2::new(x.x / x.z, x.y / x.z) - expected).norm() < 1e-6);
+    }
+
+    #[test]
+    fn the_samples_of_a_cell_lie_around_its_middle() {
+        let grid = PlanGrid::covering(Point2::new(-10.03, 4.2), Point2::new(30.0, 40.0), 0.2);
+        let samples = grid.at_samples().map(|at| at.center(3, 5));
+        let mean = samples.iter().map(|p| p.coords).sum::<Vector2<f64>>() / 4.0;
+        assert!((grid.center(3, 5).coords - mean).norm() < 1e-12);
+        let fine = grid.of_samples();
+        let cells = [(6, 10), (7, 10), (6, 11), (7, 11)];
+        for (sample, (column, row)) in samples.iter().zip(cells) {
+            assert!((fine.center(column, row) - sample).norm() < 1e-12);
+        }
     }
 
     #[test]

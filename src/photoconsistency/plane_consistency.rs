@@ -20,7 +20,7 @@ use nalgebra::{Point2, Point3};
 use super::box_sum::{HALF_WINDOW, WINDOW};
 use super::consistency_map::{ConsistencyMap, MAX_VIEWS};
 use super::pairwise_correlation::correlate_views;
-use super::plan_grid::{PlanGrid, orthophoto, orthophoto_of_surface};
+use super::plan_grid::{PlanGrid, SampledCells, SurfaceHeights, orthophoto};
 use crate::camera::Camera;
 use crate::geometry::Plane;
 use crate::ids::ViewId;
@@ -44,8 +44,9 @@ pub(crate) fn consistency_map_of_surface(
     z: &dyn Fn(&Point2<f64>) -> f64,
     grid: &PlanGrid,
 ) -> ConsistencyMap {
+    let heights = SurfaceHeights::new(z, grid);
     compared(scene, plane, grid, &|v, part| {
-        orthophoto_of_surface(&scene.view(v).gray, scene.camera(v), z, part)
+        heights.orthophoto(&scene.view(v).gray, scene.camera(v), part)
     })
 }
 
@@ -59,10 +60,10 @@ pub(crate) fn consistency_map_behind(
 ) -> ConsistencyMap {
     compared(scene, plane, grid, &|v, part| {
         let mut photo = orthophoto(&scene.view(v).gray, scene.camera(v), plane, part);
-        for (k, gray) in photo.iter_mut().enumerate() {
+        for k in 0..part.width * part.height {
             let at = part.center(k % part.width, k / part.width);
             if hidden(v, &plane.lift(at.x, at.y)) {
-                *gray = f32::NAN;
+                photo.iter_mut().for_each(|samples| samples[k] = f32::NAN);
             }
         }
         photo
@@ -76,7 +77,7 @@ fn compared(
     scene: &Scene,
     plane: &Plane,
     grid: &PlanGrid,
-    orthophoto: &dyn Fn(ViewId, &PlanGrid) -> Vec<f32>,
+    orthophoto: &dyn Fn(ViewId, &PlanGrid) -> SampledCells,
 ) -> ConsistencyMap {
     let ViewsOfPlane { views, suffice } = views_of_plane(scene, plane, grid);
     let halves = if suffice { None } else { halves(grid) };
@@ -193,7 +194,7 @@ mod tests {
         let plane = ground.plane;
         // Every place of it is seen by two or three of ten views, 25 m by 25 m each.
         let scene = strip(&[ground]);
-        let grid = PlanGrid::covering(Point2::new(-40.0, -3.0), Point2::new(40.0, 3.0), 0.2);
+        let grid = PlanGrid::covering(Point2::new(-40.0, -3.0), Point2::new(40.0, 3.0), 0.4);
         let agrees_at = |plane: &Plane| {
             let map = consistency_map(&scene, plane, &grid);
             let inside = |k: &usize| {
@@ -213,7 +214,7 @@ mod tests {
 
     #[test]
     fn halves_hold_every_cell_once() {
-        let grid = PlanGrid::covering(Point2::new(3.0, -7.0), Point2::new(33.0, 8.0), 0.1);
+        let grid = PlanGrid::covering(Point2::new(3.0, -7.0), Point2::new(33.0, 8.0), 0.2);
         let [left, right] = halves(&grid).expect("it is large");
         assert_eq!(left.width + right.width, grid.width);
         assert_eq!([left.height, right.height], [grid.height; 2]);
@@ -224,7 +225,7 @@ mod tests {
             right.width + HALF_WINDOW,
             "no farther than the whole"
         );
-        let small = PlanGrid::covering(Point2::origin(), Point2::new(10.0, 10.0), 0.1);
+        let small = PlanGrid::covering(Point2::origin(), Point2::new(9.0, 9.0), 0.2);
         assert!(halves(&small).is_none());
     }
 }

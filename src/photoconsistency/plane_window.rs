@@ -4,18 +4,20 @@
 use nalgebra::{Matrix3, Point2, Point3};
 use wide::f32x8;
 
-use super::box_sum::{HALF_WINDOW, WINDOW};
+use super::box_sum::WINDOW;
 use super::consistency_map::MAX_VIEWS;
 use super::pairwise_correlation::LEAST_VARIANCE;
-use super::plan_grid::image_from_plan;
+use super::plan_grid::{CELL_SAMPLES, image_from_plan};
 use super::plane_consistency::residual_variance;
 use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::math::larger;
 use crate::scene::Scene;
 
-/// Positions of a window.
-const POSITIONS: usize = WINDOW * WINDOW;
+/// Samples along a side of a window.
+const SIDE: usize = WINDOW * CELL_SAMPLES;
+/// Samples of a window.
+const POSITIONS: usize = SIDE * SIDE;
 /// The same in whole registers of eight.
 const REGISTERS: usize = POSITIONS.div_ceil(8);
 
@@ -28,23 +30,24 @@ pub(crate) struct Agreement {
     pub weight: f32,
 }
 
-/// Compares views in windows of the plan, of [`WINDOW`] positions a side.
+/// Compares views in windows of the plan, of [`WINDOW`] cells a side.
 pub(crate) struct WindowMatcher<'s> {
-    /// Its pixels are about as wide as the step.
+    /// Its pixels are about as far apart as samples.
     scene: &'s Scene,
-    /// Distance of the positions of a window, metres.
+    /// Cell size, metres.
     step: f64,
-    /// Columns and rows of the positions from the middle of the window, and 1 where there is one.
+    /// Columns and rows of the samples from the middle of the window, cells, and 1 where there is
+    /// one.
     positions: [[f32x8; 3]; REGISTERS],
 }
 
 impl<'s> WindowMatcher<'s> {
-    /// Windows with positions every `step` metres.
+    /// Windows of cells of `step` metres.
     pub(crate) fn new(scene: &'s Scene, step: f64) -> Self {
         let at = |k: usize| {
-            let place = |i: usize| i as f32 - HALF_WINDOW as f32;
+            let place = |i: usize| ((i as f32 + 0.5) - 0.5 * SIDE as f32) / CELL_SAMPLES as f32;
             match k < POSITIONS {
-                true => [place(k % WINDOW), place(k / WINDOW), 1.0],
+                true => [place(k % SIDE), place(k / SIDE), 1.0],
                 false => [0.0; 3],
             }
         };
@@ -129,7 +132,7 @@ impl<'s> WindowMatcher<'s> {
             sum += *values;
         }
         let sum = total(sum);
-        // Positions outside the image are not numbers.
+        // Samples outside the image are not numbers.
         if sum.is_nan() {
             return None;
         }
@@ -188,7 +191,7 @@ mod tests {
             texture: 0.3,
         };
         let scene = scene(&[roof]);
-        let step = 0.1;
+        let step = 0.2;
         let grid = PlanGrid::covering(Point2::new(-2.0, -2.0), Point2::new(2.0, 2.0), step);
         let matcher = WindowMatcher::new(&scene, step);
         for lift in [0.0, 0.4] {
@@ -197,7 +200,7 @@ mod tests {
                 ..plane
             };
             let map = consistency_map(&scene, &lifted, &grid);
-            let (column, row) = (17, 23);
+            let (column, row) = (8, 11);
             let k = row * grid.width + column;
             let middle = grid.center(column, row);
             let views = matcher.views_of(&lifted.lift(middle.x, middle.y));

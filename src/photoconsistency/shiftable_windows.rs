@@ -27,7 +27,7 @@ const STAYS: u8 = (HALF_WINDOW * WINDOW + HALF_WINDOW) as u8;
 /// For every cell of a plan grid the nearest window that holds it and no line.
 pub(crate) struct ShiftableWindows {
     grid: PlanGrid,
-    /// Row by row: `(dy + 5) * 11 + dx + 5` for a window whose middle is dx columns and dy rows
+    /// Row by row: `(dy + 2) * 5 + dx + 2` for a window whose middle is dx columns and dy rows
     /// away.
     shifts: Vec<u8>,
 }
@@ -290,10 +290,10 @@ mod tests {
         let eave = ShiftableWindows::new([line([0, 20], [59, 20])], &grid());
         for column in [0, 30, 59] {
             assert!(
-                correlation_at(&none, &roof, [column, 23]) > 0.8,
+                correlation_at(&none, &roof, [column, 21]) > 0.8,
                 "by its edge"
             );
-            for row in 21..=25 {
+            for row in 21..=22 {
                 assert!(
                     correlation_at(&eave, &roof, [column, row]) < 0.2,
                     "beyond, {row}"
@@ -310,19 +310,22 @@ mod tests {
 
     #[test]
     fn a_bare_side_is_judged_by_the_edge() {
-        let mut roof = map(
-            grid(),
-            |_, row| if row.abs_diff(20) <= 5 { 0.9 } else { 0.33 },
-        );
+        let mut roof = map(grid(), |_, row| {
+            if row.abs_diff(20) <= HALF_WINDOW {
+                0.9
+            } else {
+                0.33
+            }
+        });
         let eave = ShiftableWindows::new([line([0, 20], [59, 20])], &grid());
         assert!(
-            correlation_at(&eave, &roof, [30, 17]) < 0.4,
+            correlation_at(&eave, &roof, [30, 18]) < 0.4,
             "texture contradicts"
         );
-        for row in (0..50).filter(|row: &usize| row.abs_diff(20) > 5) {
+        for row in (0..50).filter(|row: &usize| row.abs_diff(20) > HALF_WINDOW) {
             roof.weight[row * 60..(row + 1) * 60].fill(10);
         }
-        let by_edge = eave.evidence_at(&roof, [30, 17]);
+        let by_edge = eave.evidence_at(&roof, [30, 18]);
         assert!(by_edge.correlation > 0.8, "nothing does");
         // 10 of 255 are its side's own, 190 the edge's.
         assert!((by_edge.weight - (10.0 + 0.6 * 190.0) / 255.0).abs() < 1e-6);
@@ -353,11 +356,11 @@ mod tests {
         };
         let roof = map(part, |_, row| roof_with_eave(row + 12));
         let eave = ShiftableWindows::new([line([0, 20], [59, 20])], &grid());
-        assert!(correlation_at(&eave, &roof, [15, 22 - 12]) < 0.2);
-        assert!(correlation_at(&eave, &roof, [15, 18 - 12]) > 0.8);
+        assert!(correlation_at(&eave, &roof, [15, 21 - 12]) < 0.2);
+        assert!(correlation_at(&eave, &roof, [15, 19 - 12]) > 0.8);
         // The window beside the line lies outside of a lower map.
-        let low = PlanGrid { height: 12, ..part };
+        let low = PlanGrid { height: 11, ..part };
         let roof = map(low, |_, row| roof_with_eave(row + 12));
-        assert!(correlation_at(&eave, &roof, [15, 22 - 12]) > 0.8);
+        assert!(correlation_at(&eave, &roof, [15, 21 - 12]) > 0.8);
     }
 }

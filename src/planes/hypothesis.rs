@@ -29,7 +29,8 @@ pub(crate) struct PlaneHypothesis {
     pub lines: Vec<PlaneLine>,
 }
 
-/// Compares the views (in `reduced`, whose pixels are about `step` wide) on every group's plane;
+/// Compares the views (in `reduced`, whose pixels are about as far apart as the samples of cells of
+/// `step` metres) on every group's plane;
 /// planes of two lines that the images contradict beside their own lines are dropped.
 pub(crate) fn plane_hypotheses(
     scene: &Scene,
@@ -174,7 +175,7 @@ mod tests {
                 }],
                 proposals: Vec::new(),
             };
-            confirmed_beside_lines(&input, &group, &scene, 0.1)
+            confirmed_beside_lines(&input, &group, &scene, 0.2)
         };
         assert!(confirmed_at(-0.4, 0.15), "drowned in noise, but there");
         assert!(!confirmed_at(-0.4, 0.01), "the sweep would have found it");

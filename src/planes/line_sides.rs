@@ -8,7 +8,9 @@ use crate::lines3d::Side;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid};
 
 /// Distance from a line at which its sides are sampled, cells: farther than half a window.
-pub(super) const NEXT_TO: f64 = 8.0;
+pub(super) const NEXT_TO: f64 = 4.0;
+/// Distance of the places beside a line, cells: windows share most of their cells with the next.
+const APART: f64 = 1.5;
 /// What a window says of a plane, nats, whose surface it clearly shows, ln 3: three times likelier
 /// than not. Of one that clearly shows another surface it is as much below zero.
 pub(super) const CLEAR_NATS: f64 = 1.1;
@@ -59,7 +61,7 @@ pub(super) fn places_beside(
     let length = (b - a).norm();
     let count = match length < 1e-6 {
         true => 0.0,
-        false => (length / (3.0 * grid.step)).ceil(),
+        false => (length / (APART * grid.step)).ceil(),
     };
     let across = across(line, side) * (cells * grid.step);
     (0..count as usize).filter_map(move |i| {

@@ -16,7 +16,7 @@ use crate::geometry::{Plane, Segment3};
 use crate::lines3d::Side;
 use crate::math::median;
 use crate::photoconsistency::{
-    BoxSum, ConsistencyMap, HALF_WINDOW, PlanGrid, RowSum, WINDOW_CELLS, orthophoto,
+    BoxSum, CELL_SAMPLES, ConsistencyMap, HALF_WINDOW, PlanGrid, RowSum, WINDOW_CELLS, orthophoto,
 };
 use crate::raster::Channel;
 use crate::scene::{Scene, View};
@@ -63,7 +63,7 @@ impl SingleViewEvidence {
     /// on the other?
     pub(crate) fn ends_at(&self, map: &ConsistencyMap, edge: &Segment3) -> bool {
         let [left, right] = [Side::Left, Side::Right].map(|side| {
-            let places = places_beside(&map.grid, edge, side, HALF_WINDOW as f64 + 2.0);
+            let places = places_beside(&map.grid, edge, side, HALF_WINDOW as f64 + 1.5);
             let count = places.clone().count().max(1) as f64;
             places.map(|k| self.surface_at(map, k)).sum::<f64>() / count
         });
@@ -96,7 +96,12 @@ pub(crate) fn single_view_evidence(
         return SingleViewEvidence::default();
     }
     let mean_appearance = |view: &View, channel| {
-        let photo = orthophoto(view.channel(channel).0, &view.camera, plane, grid);
+        let [mut photo, rest @ ..] = orthophoto(view.channel(channel).0, &view.camera, plane, grid);
+        for samples in &rest {
+            photo.iter_mut().zip(samples).for_each(|(sum, v)| *sum += v);
+        }
+        let samples = (CELL_SAMPLES * CELL_SAMPLES) as f32;
+        photo.iter_mut().for_each(|sum| *sum /= samples);
         window_means(&photo, grid)
     };
     let grey: Vec<Vec<f32>> = (scene.views.iter())
@@ -349,7 +354,7 @@ mod tests {
     fn seen(scene: &Scene) -> (ConsistencyMap, SingleViewEvidence) {
         let ridge = line(Point3::new(-8.0, 0.0, 6.0), Point3::new(5.0, 0.0, 6.0));
         let region = super::super::grouping::region_beside(ridge, roof());
-        let grid = PlanGrid::covering(Point2::new(-9.0, -5.0), Point2::new(9.0, 5.0), 0.1);
+        let grid = PlanGrid::covering(Point2::new(-9.0, -5.0), Point2::new(9.0, 5.0), 0.2);
         let map = consistency_map(scene, &roof(), &grid);
         let single_view = single_view_evidence(scene, &roof(), &region, &map);
         (map, single_view)

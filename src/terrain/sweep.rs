@@ -29,7 +29,7 @@ pub(super) fn matched_positions(
     let Some(view) = reduced.views.first() else {
         return Ok(Vec::new());
     };
-    let step = view.camera.ground_pixel(&middle);
+    let step = PlanGrid::cell_of_pixels(view.camera.ground_pixel(&middle));
     let bound = |f: fn(f64, f64) -> f64, start: f64| {
         let x = ends.iter().map(|p| p.x).fold(start, f);
         let y = ends.iter().map(|p| p.y).fold(start, f);
@@ -42,7 +42,7 @@ pub(super) fn matched_positions(
     );
     let grid = PlanGrid::covering(min, max, step);
     // Bounds the memory of a window that a wrong line has stretched.
-    if grid.width * grid.height > 4_000_000 {
+    if grid.width * grid.height > 1_000_000 {
         return Ok(Vec::new());
     }
     let levels = (((high - low) / 0.5).ceil() as usize).clamp(2, MAX_LEVELS);

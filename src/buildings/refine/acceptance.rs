@@ -128,8 +128,8 @@ impl AcceptanceTest<'_> {
     fn similarities(&self, new: &[Facet]) -> [Vec<[f64; 2]>; 3] {
         let compared = crate::execution::map(new, |i, n| {
             let o = self.old[i];
-            let step = self.step(o).filter(|step| moved(o, n, 0.25 * step))?;
-            Some([self.agreement(o, step), self.agreement(n, step)])
+            let pixel = self.pixel(o).filter(|pixel| moved(o, n, 0.25 * pixel))?;
+            Some([self.agreement(o, pixel), self.agreement(n, pixel)])
         });
         let mut sums = [(); 3].map(|()| vec![[0.0; 2]; new.len()]);
         for (i, pair) in compared.into_iter().enumerate() {
@@ -145,17 +145,17 @@ impl AcceptanceTest<'_> {
         sums
     }
 
-    /// Size of a pixel on the facet.
-    fn step(&self, facet: &Facet) -> Option<f64> {
+    /// Size of a pixel on the facet, metres.
+    fn pixel(&self, facet: &Facet) -> Option<f64> {
         let at = facet.outer.first()?;
         let pixels = self.scene.views.iter().map(|v| v.camera.ground_pixel(at));
         Some(pixels.fold(f64::INFINITY, f64::min))
     }
 
     /// Sums of weight and of weight times correlation inside a facet.
-    fn agreement(&self, facet: &Facet, step: f64) -> [f64; 2] {
+    fn agreement(&self, facet: &Facet, pixel: f64) -> [f64; 2] {
         let [low, high] = facet.plan_bounds();
-        let grid = PlanGrid::covering(low, high, step);
+        let grid = PlanGrid::covering(low, high, PlanGrid::cell_of_pixels(pixel));
         let map = consistency_map(self.scene, &facet.plane, &grid);
         let mut sums = [0.0; 2];
         for k in 0..grid.width * grid.height {

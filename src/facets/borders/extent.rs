@@ -63,7 +63,8 @@ fn sides(
     let along = reach.try_normalize(1e-6)?;
     let across = Vector2::new(-along.y, along.x);
     let votes = votes(h, windows, cloud, &start, [&along, &across]);
-    let least = LEAST_NATS / (h.map.grid.step * h.map.grid.step);
+    let sample_m = h.map.grid.of_samples().step;
+    let least = LEAST_NATS / (sample_m * sample_m);
     let [(t0, t1), (u0, u1)] = best_rectangle(&votes, reach.norm(), least)?;
     let at = |t: f64, u: f64| start + along * t + across * u;
     let half_window = 0.5 * WINDOW as f64 * h.map.grid.step + STRIP_M;
@@ -105,7 +106,7 @@ fn shows(line: &Segment3, [a, b]: &[Point2<f64>; 2], half_window: f64) -> bool {
     beside && common >= 0.5 * length
 }
 
-/// The evidence of one position.
+/// The evidence of one sample.
 struct Vote {
     /// Where, along two axes, metres.
     at: [f64; 2],
@@ -113,7 +114,7 @@ struct Vote {
     nats: f64,
 }
 
-/// The votes of all positions in a plane's region, along `axes` from `start`.
+/// The votes of all samples in a plane's region, along `axes` from `start`.
 fn votes(
     h: &PlaneHypothesis,
     windows: &ShiftableWindows,
@@ -123,20 +124,22 @@ fn votes(
 ) -> Vec<Vote> {
     let grid = &h.map.grid;
     let of_cloud = cloud.map(|cloud| cloud.of(&h.group.plane));
-    (0..grid.width * grid.height)
-        .filter(|&k| h.map.weight(k) > 0.0 || of_cloud.is_some())
-        .map(|k| (k, grid.center(k % grid.width, k / grid.width)))
-        .filter(|(_, p)| h.region.contains(p))
-        .map(|(k, p)| {
-            let at = [k % grid.width, k / grid.width];
-            let observed = windows.evidence_at(&h.map, at);
-            Vote {
-                at: axes.map(|axis| (p - start).dot(axis)),
-                nats: observed.nats_with_prior()
-                    + of_cloud.as_ref().map_or(0.0, |cloud| cloud.nats_at(&p)),
-            }
-        })
-        .collect()
+    let samples = grid.of_samples();
+    let mut votes = Vec::new();
+    for k in 0..grid.width * grid.height {
+        if h.map.weight(k) == 0.0 && of_cloud.is_none() {
+            continue;
+        }
+        let cell = [k % grid.width, k / grid.width];
+        let observed = windows.evidence_at(&h.map, cell).nats_with_prior();
+        let places = (grid.samples_of(cell)).map(|[column, row]| samples.center(column, row));
+        let inside = places.into_iter().filter(|p| h.region.contains(p));
+        votes.extend(inside.map(|p| Vote {
+            at: axes.map(|axis| (p - start).dot(axis)),
+            nats: observed + of_cloud.as_ref().map_or(0.0, |cloud| cloud.nats_at(&p)),
+        }));
+    }
+    votes
 }
 
 /// The rectangle with the largest sum of votes, as its spans along both axes: across first, beside

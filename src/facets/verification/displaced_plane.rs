@@ -18,12 +18,12 @@ use crate::photoconsistency::PlanGrid;
 use crate::scene::Scene;
 
 /// Least parallax between the two views farthest apart by which the plane is moved, cells: half a
-/// window. Rendered scenes give the same models from 4 to 5.
-const PARALLAX: f64 = 5.0;
+/// window. Rendered scenes give the same models from 2 to 2.5.
+const PARALLAX: f64 = 2.5;
 /// How far the plane is moved, in such steps.
 const STEPS: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
 /// Side of the parts of a facet whose visibility is sampled once, cells: half a window.
-const PART: f64 = 5.0;
+const PART: f64 = 2.5;
 /// Least difference of two rays' slopes for a parallax. Assumption: that of neighbours in a strip
 /// of normal-angle photographs is 0.3.
 const LEAST_SLOPE: f64 = 0.1;
@@ -38,8 +38,8 @@ pub(super) struct PlaneAgreement {
 }
 
 impl PlaneAgreement {
-    /// Measures it. `scene` has pixels about `step` (metres) wide, `visibility` tells which views
-    /// do not see a part of the facet.
+    /// Measures it. `scene` has pixels about as wide as the samples of cells of `step` metres are
+    /// apart, `visibility` tells which views do not see a part of the facet.
     pub(super) fn measure(
         scene: &Scene,
         facet: &Facet,
@@ -144,8 +144,8 @@ mod tests {
     use nalgebra::Vector3;
 
     fn measure(scene: &Scene, facet: &Facet, hidden: bool) -> PlaneAgreement {
-        let visibility = PartVisibility::new(scene, facet, 0.1, &|_, _| hidden);
-        PlaneAgreement::measure(scene, facet, 0.1, &visibility)
+        let visibility = PartVisibility::new(scene, facet, 0.2, &|_, _| hidden);
+        PlaneAgreement::measure(scene, facet, 0.2, &visibility)
     }
 
     #[test]
@@ -160,7 +160,7 @@ mod tests {
         let found = raised(&scene, 0.0);
         assert!(found.margin_sigmas > 3.0, "{found:?}");
         // Farther than the views' rays, whose slopes differ by 0.4 and more, are apart by half a
-        // window of cells of 0.1 m.
+        // window of cells of 0.2 m.
         for by in [-1.25, 1.25] {
             assert!(raised(&scene, by).margin_sigmas < -3.0, "{by}");
         }

@@ -141,13 +141,13 @@ fn windows_in(mask: &[bool], width: usize) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// Number of windows on a grid of 0.1 m.
+    /// Number of windows on a grid of 0.2 m.
     fn windows(rings: &[Vec<Point2<f64>>]) -> usize {
         let grid = PlanGrid {
             origin: Point2::new(2.0, -6.0),
-            step: 0.1,
-            width: 110,
-            height: 40,
+            step: 0.2,
+            width: 55,
+            height: 20,
         };
         let mask = cells_inside(rings, &grid);
         windows_in(&mask, grid.width).len()
@@ -158,13 +158,13 @@ mod tests {
         corners.map(|(x, y)| Point2::new(x + 3.0, y - 5.0)).to_vec()
     }
 
-    /// How a plane agrees at the places of a grid of 70 by 50 cells, 0.1 m, moved by whole cells.
+    /// How a plane agrees at the places of a grid of 35 by 25 cells, 0.2 m, moved by whole cells.
     fn map(moved: [f64; 2], correlation: impl Fn(Point2<f64>) -> f32) -> ConsistencyMap {
         let grid = PlanGrid {
-            origin: Point2::new(-1.0 + 0.1 * moved[0], -1.0 + 0.1 * moved[1]),
-            step: 0.1,
-            width: 70,
-            height: 50,
+            origin: Point2::new(-1.0 + 0.2 * moved[0], -1.0 + 0.2 * moved[1]),
+            step: 0.2,
+            width: 35,
+            height: 25,
         };
         let cells = grid.width * grid.height;
         let at = |k: usize| correlation(grid.center(k % grid.width, k / grid.width));
@@ -186,7 +186,7 @@ mod tests {
     fn with_edges(inside: f32) -> f64 {
         let map = map([0.0; 2], |p| {
             let from_edge = p.x.min(5.0 - p.x).min(p.y.min(3.0 - p.y));
-            if from_edge > 0.5 { inside } else { 0.9 }
+            if from_edge > 0.45 { inside } else { 0.9 }
         });
         let inside = InteriorWindows::of(&facet(), &map).windows;
         let sum: f64 = inside.iter().map(|&k| f64::from(map.correlation(k))).sum();
@@ -202,7 +202,7 @@ mod tests {
     fn a_plane_that_the_views_agree_better_on_has_the_advantage() {
         let own = map([0.0; 2], |p| 0.5 + 0.1 * scatter(p));
         let inside = InteriorWindows::of(&facet(), &own);
-        // 800 windows of 11 by 11 cells are 6.6 side by side; the mean is 0.1, the standard
+        // 231 windows of 5 by 5 cells are 9.2 side by side; the mean is 0.1, the standard
         // deviation 0.14.
         let better = map([3.0, -2.0], |p| 0.6 - 0.1 * scatter(p));
         let sigmas = inside.advantage_of(&better);
@@ -254,8 +254,8 @@ mod tests {
 
     #[test]
     fn a_strip_holds_a_window_when_it_is_as_wide() {
-        assert!(windows(&[strip(1.15)]) > 0);
-        assert!(windows(&[strip(1.05)]) == 0);
+        assert!(windows(&[strip(0.95)]) > 0);
+        assert!(windows(&[strip(0.85)]) == 0);
         assert!(windows(&[]) == 0);
     }
 

@@ -46,7 +46,7 @@ pub(crate) struct PlaneAgreement {
 pub(crate) struct DisplacedMaps([ConsistencyMap; 2]);
 
 /// Largest number of cells of a plane's grid.
-const MOST_CELLS: f64 = 60_000.0;
+const MOST_CELLS: f64 = 15_000.0;
 
 impl<'a> PlaneConsistency<'a> {
     /// Compares the views on a plane where the rings are and no solid hides it; `None` without
@@ -154,7 +154,7 @@ fn compare(
     })
 }
 
-/// A plan grid over all rings with cells as fine as the finest image.
+/// A plan grid over all rings with samples as fine as the finest image.
 fn grid_over(scene: &Scene, rings: &[Vec<Point3<f64>>], at: &Point3<f64>) -> Option<PlanGrid> {
     let corners = || rings.iter().flatten();
     let bound = |start: f64, f: fn(f64, f64) -> f64| {
@@ -168,9 +168,10 @@ fn grid_over(scene: &Scene, rings: &[Vec<Point3<f64>>], at: &Point3<f64>) -> Opt
         bound(f64::NEG_INFINITY, f64::max),
     );
     let size = max - min;
-    let step = finest_m(scene, at).max((size.x * size.y / MOST_CELLS).sqrt());
+    let step =
+        PlanGrid::cell_of_pixels(finest_m(scene, at)).max((size.x * size.y / MOST_CELLS).sqrt());
     (size.x > 0.0 && size.y > 0.0 && step.is_finite()).then_some(())?;
-    let margin = Vector2::new(6.0, 6.0) * step;
+    let margin = Vector2::new(3.0, 3.0) * step;
     Some(PlanGrid::covering(min - margin, max + margin, step))
 }
 
@@ -197,7 +198,7 @@ fn parallax_px(scene: &Scene, at: &Point3<f64>) -> f64 {
 }
 
 /// Half the window of the correlation and the pixel that an edge takes, cells.
-const REACH_CELLS: f64 = 6.0;
+const REACH_CELLS: f64 = 3.0;
 
 /// A convex ring with its sides moved inwards; `None` where little is left.
 fn shrunk(ring: &[Point3<f64>], by: f64) -> Option<Vec<Point3<f64>>> {
