@@ -192,6 +192,8 @@ fn row_of(gray: &SampledCells, y: usize, width: usize) -> [&[f32]; SAMPLES] {
 }
 
 /// For every cell of a row the sum of the products of two views' samples.
+// One copy of the code for views and pairs.
+#[inline(never)]
 fn products(a: [&[f32]; SAMPLES], b: [&[f32]; SAMPLES], out: &mut [f32]) {
     let n = out.len();
     let ([a0, a1, a2, a3], [b0, b1, b2, b3]) = (a.map(|a| &a[..n]), b.map(|b| &b[..n]));

@@ -163,6 +163,8 @@ pub(crate) fn orthophoto(
     (grid.at_samples()).map(|grid| orthophoto_at_centers(gray, camera, plane, &grid))
 }
 
+// One copy of the code for all samples of a cell.
+#[inline(never)]
 fn orthophoto_at_centers(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Vec<f32> {
     let plan_from_grid = Matrix3::new(
         grid.step,
@@ -230,6 +232,8 @@ impl SurfaceHeights {
 }
 
 /// Grey values at places along x from `start` on, `step` apart, at these heights.
+// One copy of the code for all samples of a cell.
+#[inline(never)]
 fn fill_row(
     gray: &Gray,
     camera: &Camera,
