@@ -1,9 +1,8 @@
 //! Real lines by plan position: which of them run along a border.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 use crate::geometry::Segment3;
-use crate::math::{larger, smaller};
 use crate::plan_index::PlanIndex;
 
 /// 3D lines by plan position.
@@ -13,10 +12,8 @@ pub(crate) struct LineIndex {
 }
 
 /// A border lies on a line within this distance in plan, metres, and this sine of the angle.
-const BESIDE_LINE: f64 = 0.25;
+pub(super) const BESIDE_LINE: f64 = 0.25;
 const LINE_SINE: f64 = 0.12;
-/// A place beside a line is no farther beyond its ends along a border that runs along it, metres.
-pub(super) const FAR_BESIDE_LINE: f64 = (1.0 + 2.0 * LINE_SINE) * BESIDE_LINE;
 
 impl LineIndex {
     /// Indexes the lines.
@@ -28,45 +25,24 @@ impl LineIndex {
     /// Heights of the lines that run along a -> b at its middle, ascending.
     pub(crate) fn heights_along(&self, a: &Point2<f64>, b: &Point2<f64>) -> Vec<f64> {
         let middle = Point2::from((a.coords + b.coords) * 0.5);
-        heights_at(&middle, self.along([a, b], [middle; 2], BESIDE_LINE))
+        let along = (b - a) / (b - a).norm().max(1e-12);
+        heights_at(&middle, self.along(&along, [middle; 2]))
     }
 
-    /// The lines that run along a -> b near a part of it.
-    fn along<'s>(
+    /// The lines in a direction, a unit vector, that may lie beside what is between two positions.
+    pub(super) fn along<'s>(
         &'s self,
-        [a, b]: [&Point2<f64>; 2],
-        part: [Point2<f64>; 2],
-        margin: f64,
+        direction: &Vector2<f64>,
+        ends: [Point2<f64>; 2],
     ) -> impl Iterator<Item = &'s Segment3> + use<'s> {
-        let d = (b - a) / (b - a).norm().max(1e-12);
-        let lines = self.index.touching(part, margin);
+        // A place beyond the end of a slanting line may be a little farther from its box.
+        let lines = self.index.touching(ends, 2.0 * BESIDE_LINE);
+        let direction = *direction;
         lines.map(|i| &self.lines[i as usize]).filter(move |line| {
             let along = line.p1.xy() - line.p0.xy();
-            along.norm() > 1e-9 && along.perp(&d).abs() < LINE_SINE * along.norm()
+            along.norm() > 1e-9 && along.perp(&direction).abs() < LINE_SINE * along.norm()
         })
     }
-
-    /// The lines that run along a -> b, with all those that may lie beside a part of it.
-    pub(super) fn along_part<'s>(
-        &'s self,
-        ends: [&'s Point2<f64>; 2],
-        part: [Point2<f64>; 2],
-    ) -> impl Iterator<Item = &'s Segment3> + 's {
-        // Those beside the whole are what there is.
-        let is_beside = move |line: &&Segment3| {
-            let [p, q] = [line.p0.xy(), line.p1.xy()];
-            touch(ends, [&p, &q], BESIDE_LINE)
-        };
-        self.along(ends, part, 2.0 * BESIDE_LINE).filter(is_beside)
-    }
-}
-
-/// Do two boxes, between corners, touch when one is widened by `margin` on all sides?
-fn touch([a, b]: [&Point2<f64>; 2], [c, d]: [&Point2<f64>; 2], margin: f64) -> bool {
-    (0..2).all(|k| {
-        let (low, high) = (smaller(a[k], b[k]) - margin, larger(a[k], b[k]) + margin);
-        smaller(c[k], d[k]) <= high && larger(c[k], d[k]) >= low
-    })
 }
 
 /// Heights of lines beside a place, ascending.
@@ -77,7 +53,7 @@ fn heights_at<'l>(place: &Point2<f64>, lines: impl Iterator<Item = &'l Segment3>
 }
 
 /// Height of a line beside a place; `None` where it is not.
-pub(super) fn height_at(place: &Point2<f64>, line: &Segment3) -> Option<f64> {
+fn height_at(place: &Point2<f64>, line: &Segment3) -> Option<f64> {
     let along = line.p1.xy() - line.p0.xy();
     let length = along.norm();
     let (u, r) = (along / length, place - line.p0.xy());

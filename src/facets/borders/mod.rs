@@ -8,6 +8,7 @@
 //! arrangement   the plan cut into cells by the border lines
 //! line_index    which real lines run along a border
 //! border_cost   what a border between two planes costs
+//! side_cost     the same for a side of an outline, summed exactly along it
 //! ```
 
 mod arrangement;
@@ -17,10 +18,12 @@ mod border_lines;
 mod bounding;
 mod extent;
 mod line_index;
+mod side_cost;
 
 pub(crate) use arrangement::Arrangement;
 pub use border::{Border, BorderKind};
-pub(crate) use border_cost::{BorderCosts, LINE_HEIGHT, ON_LINE, side_share};
+pub(crate) use border_cost::{BorderCosts, LINE_HEIGHT, ON_LINE};
 pub(crate) use border_lines::border_lines;
 pub(crate) use bounding::bounding_lines;
 pub(crate) use line_index::LineIndex;
+pub(crate) use side_cost::charged_length;

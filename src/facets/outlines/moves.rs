@@ -13,14 +13,15 @@ use super::energy::OutlineEnergy;
 use super::rings::{Chain, ChainPlace, Links, Rings};
 use super::ways;
 use crate::evidence::CornerTable;
-use crate::facets::borders::{ON_LINE, side_share};
+use crate::facets::borders::{ON_LINE, charged_length};
 use crate::geometry::bounds;
+use crate::math::larger;
 
-/// Sides are rated in pieces of this length, metres: lines that are no farther away run along them.
-const PIECE_M: f64 = 0.25;
+/// Places along an outline are told apart by so much, metres: as far as lines beside it may lie.
+const PLACE_M: f64 = 0.25;
 
-/// Energies that differ by less are the same, nats.
-const ROUNDING_NATS: f64 = 1e-6;
+/// Energies that differ by less are the same, nats: likelihoods a hundredth apart decide nothing.
+const SAME_NATS: f64 = 0.01;
 
 /// A simpler way between two vertices of a chain.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,11 +189,8 @@ impl RatedChain<'_> {
             let Move { stretch, way } = &rated.to_make;
             // Of two ways that cost the same the one with fewer vertices is taken.
             let fewer = way.len() < stretch[1] - stretch[0] + 1;
-            let so_far = match best {
-                Some((gain, _)) => gain,
-                None if fewer => -ROUNDING_NATS,
-                None => ROUNDING_NATS,
-            };
+            let needed = if fewer { -SAME_NATS } else { SAME_NATS };
+            let so_far = best.map_or(needed, |(gain, _)| larger(gain, needed));
             let most = rated.without_area_and_sides + nats;
             // Whatever lines run along it, the way costs something.
             if most - self.least(way) <= so_far {
@@ -210,8 +208,7 @@ impl RatedChain<'_> {
     /// What the sides of a way cost at least, nats.
     fn least(&self, way: &[Point2<f64>]) -> f64 {
         let length: f64 = way.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-        // Less by what rounding may add to the sum of many pieces.
-        ON_LINE * length * self.energy.border_nats_per_m - ROUNDING_NATS
+        ON_LINE * length * self.energy.border_nats_per_m
     }
 
     /// What the sides of a way cost, nats.
@@ -224,8 +221,7 @@ impl RatedChain<'_> {
         let plane = |facet: usize| &self.energy.planes[self.area.label(facet) as usize];
         let (left, right) = (plane(self.chain.left), self.chain.right.map(plane));
         let ends = [&ends[0], &ends[1]];
-        let share = side_share(self.energy.lines, ends, PIECE_M, Some(left), right);
-        share * (ends[1] - ends[0]).norm() * self.energy.border_nats_per_m
+        charged_length(self.energy.lines, ends, Some(left), right) * self.energy.border_nats_per_m
     }
 }
 
@@ -247,5 +243,5 @@ fn corners(way: &[Point2<f64>], chain: &Chain, stretch: [usize; 2], rings: &Ring
 fn corner(a: Point2<f64>, b: Point2<f64>, c: Point2<f64>) -> f64 {
     let (into, out) = (b - a, c - b);
     let turn = crate::math::atan2(into.perp(&out), into.dot(&out)).abs();
-    CornerTable::fitted().cost(turn.to_degrees(), PIECE_M)
+    CornerTable::fitted().cost(turn.to_degrees(), PLACE_M)
 }
