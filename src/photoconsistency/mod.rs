@@ -34,7 +34,8 @@ pub(crate) use consistency_map::{ConsistencyMap, MAX_VIEWS};
 pub(crate) use line_side_strip::{LineSideStrip, StripPatch};
 pub(crate) use plan_grid::{CELL_SAMPLES, PlanGrid, orthophoto};
 pub(crate) use plane_consistency::{
-    consistency_map, consistency_map_behind, consistency_map_of_surface, residual_variance,
+    LEAST_SLOPE, consistency_map, consistency_map_behind, consistency_map_of_surface,
+    residual_variance,
 };
 pub(crate) use plane_window::{Agreement, WindowMatcher};
 pub(crate) use shiftable_windows::ShiftableWindows;

@@ -15,7 +15,7 @@
 //!   plane correlate by beyond chance; what a correlation says at a weight is a fitted table
 //!   ([`crate::evidence`]).
 
-use nalgebra::{Point2, Point3};
+use nalgebra::{Point2, Point3, Vector2};
 
 use super::box_sum::{HALF_WINDOW, WINDOW};
 use super::consistency_map::{ConsistencyMap, MAX_VIEWS};
@@ -24,6 +24,7 @@ use super::plan_grid::{PlanGrid, SampledCells, SurfaceHeights, orthophoto};
 use crate::camera::Camera;
 use crate::geometry::Plane;
 use crate::ids::ViewId;
+use crate::math::smaller;
 use crate::scene::Scene;
 
 /// Standard deviation between two views of one surface over that of the pixel noise: sampling and
@@ -112,6 +113,10 @@ fn halves(grid: &PlanGrid) -> Option<[PlanGrid; 2]> {
 /// Positions along each side of the window at which the visibility is sampled.
 const SAMPLES: usize = 6;
 
+/// Least difference of two rays' slopes for a parallax. Assumption: that of neighbours in a strip
+/// of normal-angle photographs is 0.3.
+pub(crate) const LEAST_SLOPE: f64 = 0.1;
+
 /// The views to compare.
 struct ViewsOfPlane {
     views: Vec<ViewId>,
@@ -120,17 +125,26 @@ struct ViewsOfPlane {
 }
 
 /// At most [`MAX_VIEWS`], such that every part of the window is seen by as many as possible,
-/// frontal ones first. Crops of large photographs often show a part only.
+/// frontal ones first. Crops of large photographs often show a part only. Two photographs from one
+/// place agree about every plane, so that one of them is enough.
 fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> ViewsOfPlane {
     let candidates: Vec<CandidateView> = (scene.view_ids())
         .filter_map(|v| CandidateView::new(v, scene.camera(v), plane, grid))
         .collect();
+    // How much of a parallax a view has with those that are chosen, 0 to 1.
+    let apart = |i: usize, chosen: &[usize]| {
+        let slopes = chosen
+            .iter()
+            .map(|&c| (candidates[i].slope - candidates[c].slope).norm());
+        slopes.fold(LEAST_SLOPE, smaller) / LEAST_SLOPE
+    };
     let mut seen_by = [0u32; SAMPLES * SAMPLES];
     let mut chosen: Vec<usize> = Vec::new();
     while chosen.len() < MAX_VIEWS {
         let best = (0..candidates.len())
             .filter(|i| !chosen.contains(i))
-            .map(|i| (candidates[i].gain(&seen_by), i))
+            .map(|i| (candidates[i].gain(&seen_by) * apart(i, &chosen), i))
+            .filter(|(gain, _)| *gain > 0.0)
             .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
         let Some((_, best)) = best else { break };
         let sees = candidates[best].sees.iter();
@@ -138,8 +152,9 @@ fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> ViewsOfPlane
         chosen.push(best);
     }
     let sees_all = |i: &usize| !candidates[*i].sees.contains(&false);
+    let are_all = chosen.len() < MAX_VIEWS || chosen.len() == candidates.len();
     ViewsOfPlane {
-        suffice: chosen.len() == candidates.len() || chosen.iter().all(sees_all),
+        suffice: are_all || chosen.iter().all(sees_all),
         views: chosen.into_iter().map(|i| candidates[i].view).collect(),
     }
 }
@@ -149,6 +164,8 @@ struct CandidateView {
     view: ViewId,
     /// Cosine of the angle between the plane's normal and the direction to the camera.
     cosine: f64,
+    /// That of the ray from the middle of the window, plan over height.
+    slope: Vector2<f64>,
     sees: [bool; SAMPLES * SAMPLES],
 }
 
@@ -159,14 +176,20 @@ impl CandidateView {
             plane.lift(grid.origin.x + x * grid.step, grid.origin.y + y * grid.step)
         };
         let middle = at(0.5, 0.5);
-        let cosine = (camera.center - middle).normalize().dot(&plane.normal);
+        let ray = camera.center - middle;
+        let cosine = ray.normalize().dot(&plane.normal);
         let sees = std::array::from_fn(|k| {
             let part = |i: usize| (i as f64 + 0.5) / SAMPLES as f64;
             let p = at(part(k % SAMPLES), part(k / SAMPLES));
             (camera.project(&p)).is_some_and(|x| camera.contains(&x, 1.0))
         });
         // A plane seen at a grazing angle (below 15 degrees) has no usable pixels.
-        (cosine > 0.26 && sees.contains(&true)).then_some(Self { view, cosine, sees })
+        (cosine > 0.26 && sees.contains(&true)).then_some(Self {
+            view,
+            cosine,
+            slope: ray.xy() / ray.z,
+            sees,
+        })
     }
 
     /// The gain in coverage: less where others see the position already.
@@ -210,6 +233,20 @@ mod tests {
         };
         assert!(agrees_at(&plane) > 0.98);
         assert!(agrees_at(&Plane { d: -3.0, ..plane }) < 0.05);
+    }
+
+    #[test]
+    fn photographs_from_one_place_count_once() {
+        let ground = level_ground();
+        let plane = ground.plane;
+        let mut scene = strip(&[ground]);
+        let grid = PlanGrid::covering(Point2::new(-3.0, -3.0), Point2::new(3.0, 3.0), 0.4);
+        let views = |scene: &Scene| views_of_plane(scene, &plane, &grid).views;
+        let before = views(&scene);
+        // Each twice, as a drone that hovers takes them.
+        let repeated = scene.views.clone();
+        scene.views.extend(repeated);
+        assert_eq!(views(&scene), before);
     }
 
     #[test]

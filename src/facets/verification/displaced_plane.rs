@@ -14,7 +14,7 @@ use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::math::larger;
 use crate::model::Facet;
-use crate::photoconsistency::PlanGrid;
+use crate::photoconsistency::{LEAST_SLOPE, PlanGrid};
 use crate::scene::Scene;
 
 /// Least parallax between the two views farthest apart by which the plane is moved, cells: half a
@@ -24,9 +24,6 @@ const PARALLAX: f64 = 2.5;
 const STEPS: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
 /// Side of the parts of a facet whose visibility is sampled once, cells: half a window.
 const PART: f64 = 2.5;
-/// Least difference of two rays' slopes for a parallax. Assumption: that of neighbours in a strip
-/// of normal-angle photographs is 0.3.
-const LEAST_SLOPE: f64 = 0.1;
 
 /// How the views that see a facet agree on its plane.
 #[derive(Clone, Debug, Default, PartialEq)]
