@@ -81,17 +81,22 @@ export function freeEdges(facets: readonly Facet[], index: number): Ends[] {
   return edgesOf(own?.outer ?? []).filter((edge) => !isShared(edge));
 }
 
-/** The free edge of a facet beyond which its counterpart would lie: the highest level one. */
+/** Edges whose heights differ by less are as high as each other, metres: as near as an edge is found again. */
+const AS_HIGH_M = 0.4;
+
+/** The free edge of a facet beyond which its counterpart would lie: the longest of the highest level ones. */
 export function ridgeOf(facets: readonly Facet[], index: number): Ends | null {
   const level = freeEdges(facets, index).filter(([p, q]) => {
     const [dx, dy, dz] = difference(q, p);
     return Math.abs(dz) < 0.1 * Math.hypot(dx, dy);
   });
   const height = (edge: Ends) => middle(edge)[2];
-  return level.reduce<Ends | null>(
-    (best, edge) => (best === null || height(edge) > height(best) ? edge : best),
-    null,
-  );
+  const highest = Math.max(...level.map(height));
+  const length = ([p, q]: Ends) => Math.hypot(...difference(q, p));
+  // A ridge may turn by a step at its end, which is as high as the ridge.
+  return level
+    .filter((edge) => height(edge) > highest - AS_HIGH_M)
+    .reduce<Ends | null>((best, edge) => (best === null || length(edge) > length(best) ? edge : best), null);
 }
 
 /** The ends of edges as a ring that does not cross itself: the second edge is turned where needed. */

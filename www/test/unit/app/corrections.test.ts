@@ -80,6 +80,23 @@ describe("edges", () => {
     expect(eave?.[0]?.[2]).toBe(6);
   });
 
+  it("have it beyond the ridge, not beyond a step at its end that stands a little higher", () => {
+    const stepped = facet(
+      [
+        [-6, -4],
+        [6, -4],
+        [6, 0.1],
+        [5.7, 0.1],
+        [5.7, 0],
+        [-6, 0],
+      ],
+      9,
+      0.75,
+    );
+    const ridge = ridgeOf([stepped], 0);
+    expect(ridge?.map(([x]) => x)).toEqual([5.7, -6]);
+  });
+
   it("make a ring that does not cross itself, whichever way they were drawn", () => {
     const [a, b, c, d]: Vec3[] = [
       [0, 0, 0],
