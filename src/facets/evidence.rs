@@ -66,7 +66,8 @@ impl PlaneEvidence {
         };
         let per_group = crate::execution::map_part(hypotheses, 0.7..0.75, |_, h| {
             let of_cloud = cloud.map(|cloud| cloud.of(&h.group.plane));
-            sum_over_cells(h, windows, &raster, grid, of_cloud.as_ref())
+            let places = (raster.as_slice(), arrangement.cells);
+            sum_over_cells(h, windows, places, grid, of_cloud.as_ref())
         });
         let samples = samples_of_cells(&raster, arrangement.cells);
         let sample_m2 = grid.step * grid.step;
@@ -197,28 +198,24 @@ fn ground_evidence(
     evidence.into_iter().map(|nats| larger(nats, 0.0)).collect()
 }
 
-/// Sums over the cells of the arrangement, of which `raster` says where the samples `grid` lie.
+/// Sums over the cells of the arrangement: `raster` says in which of `cells` each sample of `grid`
+/// lies.
 fn sum_over_cells(
     hypothesis: &PlaneHypothesis,
     windows: &ShiftableWindows,
-    raster: &[u32],
+    (raster, cells): (&[u32], usize),
     grid: &PlanGrid,
     cloud: Option<&OfPlane>,
-) -> BTreeMap<usize, CellEvidence> {
+) -> Vec<(usize, CellEvidence)> {
     let (map, region) = (&hypothesis.map, &hypothesis.region);
     let window = &map.grid;
     let samples = window.of_samples();
     let (dc, dr) = samples.offset_in(grid);
     let area = grid.step * grid.step;
-    let mut cells = BTreeMap::<usize, CellEvidence>::new();
-    // Samples one after the other mostly lie in one cell.
-    const NO_CELL: usize = usize::MAX;
-    let store = |cells: &mut BTreeMap<_, _>, (cell, evidence)| {
-        if cell != NO_CELL {
-            cells.insert(cell, evidence);
-        }
-    };
-    let mut run = (NO_CELL, CellEvidence::default());
+    const NO_PLACE: u32 = u32::MAX;
+    // By cell the place of its sum.
+    let mut place_of = vec![NO_PLACE; cells];
+    let mut sums: Vec<(usize, CellEvidence)> = Vec::new();
     let within =
         |at: usize, d: isize, size: usize| at.checked_add_signed(d).filter(|moved| *moved < size);
     for row in 0..window.height {
@@ -245,11 +242,11 @@ fn sum_over_cells(
                     continue;
                 }
                 let cell = cell as usize;
-                if run.0 != cell {
-                    store(&mut cells, run);
-                    run = (cell, cells.get(&cell).copied().unwrap_or_default());
+                if place_of[cell] == NO_PLACE {
+                    place_of[cell] = sums.len() as u32;
+                    sums.push((cell, CellEvidence::default()));
                 }
-                let e = &mut run.1;
+                let e = &mut sums[place_of[cell] as usize].1;
                 e.single_view += single_view * area;
                 e.cloud += of_cloud * area;
                 let weight = observed.weight * area;
@@ -260,8 +257,7 @@ fn sum_over_cells(
             }
         }
     }
-    store(&mut cells, run);
-    cells
+    sums
 }
 
 #[cfg(test)]

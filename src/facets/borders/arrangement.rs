@@ -192,28 +192,23 @@ fn span(t: &[Point2<f64>; 3], y: f64) -> Option<(f64, f64)> {
 
 /// Vertices of the arrangement, snapped, and the pieces between them.
 fn split_at_crossings(borders: &[Border]) -> (Vec<Point2<f64>>, Vec<(usize, usize)>) {
-    let mut snapper = VertexSnapper::default();
-    for border in borders {
-        snapper.vertex(border.a);
-        snapper.vertex(border.b);
-    }
+    let mut places: Vec<Point2<f64>> = borders.iter().flat_map(|b| [b.a, b.b]).collect();
     let index = PlanIndex::new(borders.iter().map(|b| [b.a, b.b]));
     for (i, p) in borders.iter().enumerate() {
         let near = index.touching([p.a, p.b], SNAP).map(|j| j as usize);
         let mut later: Vec<usize> = near.filter(|j| *j > i).collect();
         later.sort();
-        for x in later.into_iter().filter_map(|j| crossing(p, &borders[j])) {
-            snapper.vertex(x);
-        }
+        places.extend(later.into_iter().filter_map(|j| crossing(p, &borders[j])));
     }
+    let vertices = SnappedVertices::new(&places);
     let mut pieces = Vec::new();
     for border in borders {
-        let on = snapper.along(border);
+        let on = vertices.along(border);
         pieces.extend(on.windows(2).map(|w| (w[0].min(w[1]), w[0].max(w[1]))));
     }
     pieces.sort();
     pieces.dedup();
-    (snapper.points, pieces)
+    (vertices.points, pieces)
 }
 
 /// Where two borders cross (ends included, with the snapping distance as slack).
@@ -230,23 +225,27 @@ fn crossing(p: &Border, q: &Border) -> Option<Point2<f64>> {
     ((-es..=1.0 + es).contains(&s) && (-et..=1.0 + et).contains(&t)).then(|| p.a + d * s)
 }
 
-/// Collects vertices; a new one near an old one is the old one.
-#[derive(Default)]
-struct VertexSnapper {
+/// Vertices, none of them near another one.
+struct SnappedVertices {
     points: Vec<Point2<f64>>,
     index: PlanIndex,
 }
 
-impl VertexSnapper {
-    fn vertex(&mut self, p: Point2<f64>) {
-        let is_near = self
-            .index
-            .touching([p; 2], SNAP)
-            .any(|v| (self.points[v as usize] - p).norm_squared() <= SNAP * SNAP);
-        if !is_near {
-            self.index.insert([p; 2], self.points.len() as u32);
-            self.points.push(p);
+impl SnappedVertices {
+    /// The vertices at some places: one that is near an earlier vertex is that vertex.
+    fn new(places: &[Point2<f64>]) -> Self {
+        let of_places = PlanIndex::new(places.iter().map(|p| [*p; 2]));
+        let mut is_vertex = vec![false; places.len()];
+        for (i, p) in places.iter().enumerate() {
+            is_vertex[i] = !of_places.touching([*p; 2], SNAP).any(|j| {
+                let j = j as usize;
+                j < i && is_vertex[j] && (places[j] - p).norm_squared() <= SNAP * SNAP
+            });
         }
+        let vertices = places.iter().zip(is_vertex);
+        let points: Vec<Point2<f64>> = vertices.filter(|(_, is)| *is).map(|(p, _)| *p).collect();
+        let index = PlanIndex::new(points.iter().map(|p| [*p; 2]));
+        Self { points, index }
     }
 
     /// The vertices on a border, in order from a to b.
