@@ -112,6 +112,8 @@ impl Band<'_> {
             search.as_ref()?.patch((*z)?, Vector2::zeros())
         };
         let mut patches: Vec<Option<Patch>> = searches.iter().zip(heights).map(level).collect();
+        let known = |patch: &Option<Patch>| patch.iter().map(|p| (p.z, p.gradient)).collect();
+        let mut tried: Vec<Vec<TriedPlane>> = patches.iter().map(known).collect();
         for turn in 0..2 * TURNS {
             for k in 0..patches.len() {
                 let cell = self.first + k;
@@ -123,7 +125,7 @@ impl Band<'_> {
                 };
                 let beside = around(self.grid.width, patches.len() / self.grid.width, k);
                 let others: Vec<Patch> = beside.filter_map(|k| patches[k]).collect();
-                patches[k] = Some(search.improved(patch, &others, turn, cell));
+                patches[k] = Some(search.improved(patch, &others, &mut tried[k], turn, cell));
             }
         }
         patches
@@ -141,6 +143,12 @@ fn around(width: usize, height: usize, cell: usize) -> impl Iterator<Item = usiz
         (c >= 0 && r >= 0 && c < w && r < h).then_some((r * w + c) as usize)
     })
 }
+
+/// Height and gradient of a plane that was compared at a place.
+type TriedPlane = (f64, Vector2<f64>);
+
+/// Heights and gradients that differ by less are those of one plane.
+const SAME_PLANE: f64 = 1e-9;
 
 /// The search at one place.
 struct Search<'a> {
@@ -167,13 +175,25 @@ impl Search<'_> {
         })
     }
 
-    /// The best of a patch, the planes of others here, and its own plane moved and tilted.
-    fn improved(&self, patch: Patch, others: &[Patch], turn: usize, cell: usize) -> Patch {
+    /// The best of a patch, the planes of others here, and its own plane moved and tilted; without
+    /// those that were `tried` here before.
+    fn improved(
+        &self,
+        patch: Patch,
+        others: &[Patch],
+        tried: &mut Vec<TriedPlane>,
+        turn: usize,
+        cell: usize,
+    ) -> Patch {
         let mut best = patch;
-        let keep_better = |z: f64, gradient: Vector2<f64>, best: &mut Patch| {
-            if gradient.norm() > STEEPEST || (z, gradient) == (best.z, best.gradient) {
+        let mut keep_better = |z: f64, gradient: Vector2<f64>, best: &mut Patch| {
+            let is_known = |&(height, slope): &TriedPlane| {
+                (z - height).abs() < SAME_PLANE && (gradient - slope).amax() < SAME_PLANE
+            };
+            if gradient.norm() > STEEPEST || tried.iter().any(is_known) {
                 return;
             }
+            tried.push((z, gradient));
             if let Some(tried) = self.patch(z, gradient)
                 && tried.correlation > best.correlation
             {

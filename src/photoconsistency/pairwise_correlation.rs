@@ -11,8 +11,8 @@ use super::consistency_map::{ConsistencyMap, MAX_VIEWS};
 use super::plan_grid::{CELL_SAMPLES, PlanGrid, SampledCells};
 use crate::math::larger;
 
-/// Compares orthophotos on `grid`, at most [`MAX_VIEWS`]; `residual_variance` is the variance by which the grey values of the views differ
-/// at random.
+/// Compares orthophotos on `grid`, at most [`MAX_VIEWS`]; `residual_variance` is the variance by
+/// which the grey values of the views differ at random.
 pub(super) fn correlate_views(
     photos: impl Iterator<Item = SampledCells>,
     residual_variance: f32,
