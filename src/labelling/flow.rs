@@ -200,7 +200,7 @@ mod tests {
         for seed in 1..30 {
             let mut next = uniform(seed);
             let mut draw = |levels: f64| (next() * levels) as i64;
-            // Blocks of deficits that their surroundings cannot meet, and single ones that they can.
+            // Blocks of deficits that their surroundings cannot meet, and single ones they can.
             let is_in_block = |i: usize| (i % SIDE / 8 + i / SIDE / 8).is_multiple_of(3);
             let surplus =
                 (0..SIDE * SIDE).map(|i| draw(40.0) - if is_in_block(i) { 25 } else { 15 });
@@ -213,7 +213,7 @@ mod tests {
             let left = flow.run();
             let reached = flow.reached();
             assert!(left > 0 && reached.contains(&true));
-            // No cut gains more than what is left of the deficits: one that does gain it is the best.
+            // No cut gains more than what is left of the deficits: one that does is the best.
             let own = (0..SIDE * SIDE)
                 .filter(|i| !reached[*i])
                 .map(|i| -surplus[i]);
