@@ -57,6 +57,9 @@ impl PairwiseCosts for Borders {
         BORDER
     }
 
+    // All edges cost the same.
+    fn reorder(&mut self, _: &[usize]) {}
+
     fn upper_bound(&self, _: usize) -> f64 {
         BORDER
     }
@@ -109,7 +112,7 @@ fn labelled(found: &PatchGrid, matcher: &WindowMatcher, regions: &[Region]) -> V
     };
     let mut labelling = Labelling::new(energy, regions.len() as u32);
     labelling.minimise();
-    labelling.labels().to_vec()
+    labelling.labels()
 }
 
 /// Connected cells of one plane, with the plane: parts with enough cells.

@@ -285,7 +285,7 @@ fn solve(
     let mut measured: BTreeMap<(u32, Vec<usize>), Measured> = BTreeMap::new();
     for round in 1..=ROUNDS {
         labelling.minimise();
-        let labels = labelling.labels().to_vec();
+        let labels = labelling.labels();
         let labels = without_islands(&competing.arrangement, labels, params.min_area_m2);
         let delineation = delineate(&competing.arrangement, &labels, &competing.planes);
         labelling.relabel(labels);

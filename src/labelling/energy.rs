@@ -8,6 +8,17 @@ pub(crate) trait PairwiseCosts: Sync {
     /// Cost of `left` and `right`, which differ, on the first and the second cell of an edge.
     fn cost(&self, edge: usize, left: u32, right: u32) -> f64;
 
+    /// The same where both may be one label, which costs nothing.
+    fn between(&self, edge: usize, left: u32, right: u32) -> f64 {
+        match left == right {
+            true => 0.0,
+            false => self.cost(edge, left, right),
+        }
+    }
+
+    /// Puts the edges into another order: `order` holds the former index of each.
+    fn reorder(&mut self, order: &[usize]);
+
     /// The most that any two labels can cost there.
     fn upper_bound(&self, edge: usize) -> f64;
 }
@@ -24,37 +35,23 @@ pub(crate) struct Energy<B> {
     pub borders: B,
 }
 
+#[cfg(test)]
 impl<B: PairwiseCosts> Energy<B> {
-    pub(super) fn border(&self, edge: usize, left: u32, right: u32) -> f64 {
-        if left == right {
-            return 0.0;
-        }
-        self.borders.cost(edge, left, right)
-    }
-
-    pub(super) fn unary(&self, cell: usize, label: u32) -> Option<f64> {
-        if label == NO_PLANE {
-            return Some(0.0);
-        }
-        self.unary[cell]
-            .binary_search_by_key(&label, |u| u.0)
-            .ok()
-            .map(|i| self.unary[cell][i].1)
-    }
-
-    #[cfg(test)]
     /// The energy of a labelling; infinite when a cell has a plane that may not cover it.
     pub(super) fn of(&self, labels: &[u32]) -> f64 {
         let data: f64 = labels
             .iter()
             .enumerate()
-            .map(|(c, &l)| self.unary(c, l).unwrap_or(f64::INFINITY))
+            .map(|(c, &l)| match l {
+                NO_PLANE => 0.0,
+                _ => (self.unary[c].iter().find(|u| u.0 == l)).map_or(f64::INFINITY, |u| u.1),
+            })
             .sum();
         let borders: f64 = self
             .edges
             .iter()
             .enumerate()
-            .map(|(e, cells)| self.border(e, labels[cells[0]], labels[cells[1]]))
+            .map(|(e, cells)| self.borders.between(e, labels[cells[0]], labels[cells[1]]))
             .sum();
         data + borders
     }

@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::cut::MinimumCut;
 use super::energy::{Energy, NO_PLANE, PairwiseCosts};
+use super::graph::{CellGraph, in_order_of_neighbours};
 
 /// How far from a change, in cells, others may move with it. Assumption: what needs more cells to
 /// pay than those around a change did not pay before it. Measured: 4, 10 and all give labellings
@@ -13,8 +14,10 @@ const RINGS: usize = 4;
 /// A labelling on its way to the least energy. It records which expansions were tried, so that
 /// after a small change only the planes and cells around it are tried again.
 pub(crate) struct Labelling<B> {
-    energy: Energy<B>,
+    borders: B,
     graph: CellGraph,
+    /// The cell in here of each cell of the energy.
+    cells: Vec<u32>,
     clock: ExpansionHistory,
     labels: Vec<u32>,
     /// What each cell's label costs there.
@@ -22,10 +25,14 @@ pub(crate) struct Labelling<B> {
     /// The node of each cell in a cut that is being made, or [`NO_NODE`]; cuts that are made at a
     /// time have no cell in common.
     nodes: Vec<AtomicU32>,
+    /// The place of each cell among the candidates of the plane that was expanded there last.
+    places: Vec<AtomicU32>,
 }
 
 /// The cell is in no cut.
 const NO_NODE: u32 = u32::MAX;
+/// No plane was expanded there.
+const NO_PLACE: u32 = u32::MAX;
 
 /// A cell that may change to the plane of an expansion.
 struct Movable {
@@ -37,20 +44,24 @@ struct Movable {
 impl<B: PairwiseCosts> Labelling<B> {
     /// No plane covers any cell; `planes` is the number of planes.
     pub(crate) fn new(energy: Energy<B>, planes: u32) -> Self {
-        let cells = energy.unary.len();
+        let (energy, cells) = in_order_of_neighbours(energy);
+        let none = |unset: u32| cells.iter().map(|_| AtomicU32::new(unset)).collect();
         Self {
             graph: CellGraph::new(&energy, planes),
-            clock: ExpansionHistory::new(cells, planes),
-            labels: vec![NO_PLANE; cells],
-            costs: vec![0.0; cells],
-            nodes: (0..cells).map(|_| AtomicU32::new(NO_NODE)).collect(),
-            energy,
+            clock: ExpansionHistory::new(cells.len(), planes),
+            labels: vec![NO_PLANE; cells.len()],
+            costs: vec![0.0; cells.len()],
+            nodes: none(NO_NODE),
+            places: none(NO_PLACE),
+            borders: energy.borders,
+            cells,
         }
     }
 
     /// The plane of each cell, or [`NO_PLANE`].
-    pub(crate) fn labels(&self) -> &[u32] {
-        &self.labels
+    pub(crate) fn labels(&self) -> Vec<u32> {
+        let of_cells = self.cells.iter().map(|&c| self.labels[c as usize]);
+        of_cells.collect()
     }
 
     /// Goes on until no single expansion around a change improves: plane by plane, in their order.
@@ -62,7 +73,7 @@ impl<B: PairwiseCosts> Labelling<B> {
                 let planes = self.graph.independent_planes[planes].clone();
                 self.expand_independent(&planes, start);
             }
-            let last = start + 1 + self.graph.surroundings_of_plane.len() as u32;
+            let last = start + 1 + self.graph.planes() as u32;
             let changed = self.expand(NO_PLANE);
             self.clock.tried(NO_PLANE, &changed, last);
             if !self.clock.changed_since(start) {
@@ -82,24 +93,27 @@ impl<B: PairwiseCosts> Labelling<B> {
 
     /// Sets the labels to others.
     pub(crate) fn relabel(&mut self, labels: Vec<u32>) {
-        let differs = |c: &usize| labels[*c] != self.labels[*c];
-        let changed: Vec<usize> = (0..labels.len()).filter(differs).collect();
-        self.clock.changed(&changed);
-        self.labels = labels;
-        for cell in changed {
-            let cost = self.energy.unary(cell, self.labels[cell]);
-            self.costs[cell] = cost.unwrap_or(BLOCKED);
+        let mut changed = Vec::new();
+        for (&cell, label) in self.cells.iter().zip(labels) {
+            let cell = cell as usize;
+            if self.labels[cell] != label {
+                self.labels[cell] = label;
+                self.costs[cell] = self.graph.candidates.cost(cell, label);
+                changed.push(cell);
+            }
         }
+        self.clock.changed(&changed);
     }
 
     /// The plane may no longer cover the cells; no plane does for now.
     pub(crate) fn exclude(&mut self, plane: u32, cells: &[usize]) {
-        for &cell in cells {
-            self.energy.unary[cell].retain(|u| u.0 != plane);
+        let cells: Vec<usize> = cells.iter().map(|&c| self.cells[c] as usize).collect();
+        for &cell in &cells {
+            self.graph.candidates.exclude(cell, plane);
             self.labels[cell] = NO_PLANE;
             self.costs[cell] = 0.0;
         }
-        self.clock.changed(cells);
+        self.clock.changed(&cells);
     }
 
     /// Makes the best move to `alpha`; returns the cells that change.
@@ -136,16 +150,31 @@ impl<B: PairwiseCosts> Labelling<B> {
     /// themselves since it was last tried or lie beside one, and what is connected with them by
     /// such cells, some rings far.
     fn movable_around_news(&self, alpha: u32) -> Vec<Movable> {
-        let (labels, energy, graph) = (&self.labels, &self.energy, &self.graph);
-        let costs = &self.costs;
+        let graph = &self.graph;
+        let surroundings = graph.surroundings_of(alpha).iter();
+        let is_news = |cell: &&u32| self.clock.is_news(**cell, alpha);
+        let mut news = surroundings.filter(is_news).peekable();
+        if news.peek().is_none() {
+            return Vec::new();
+        }
+        for (place, cell) in graph.paying(alpha) {
+            self.places[cell as usize].store(place as u32, Ordering::Relaxed);
+        }
+        let candidates = graph.candidates.of(alpha);
+        let cost = |cell: usize| {
+            let place = self.places[cell].load(Ordering::Relaxed) as usize;
+            let is_candidate = candidates.contains(&place);
+            is_candidate.then(|| graph.candidates.costs[place])
+        };
         let change = |cell: usize| {
-            if labels[cell] == alpha {
+            if self.labels[cell] == alpha {
                 return None;
             }
-            let (bound, change) = (graph.border_bound[cell], energy.unary(cell, alpha)?);
+            let change = if alpha == NO_PLANE { 0.0 } else { cost(cell)? };
+            let bound = graph.border_bound[cell];
             // Most cells of a plane's region are nothing like the plane and could not, whatever
             // their neighbours do; where it costs more than all borders, no plane is always better.
-            (costs[cell] - change + bound >= 0.0 && change <= bound).then_some(change)
+            (self.costs[cell] - change + bound >= 0.0 && change <= bound).then_some(change)
         };
         let mut movable = Vec::new();
         let reach = |cell: usize, movable: &mut Vec<Movable>| {
@@ -156,12 +185,10 @@ impl<B: PairwiseCosts> Labelling<B> {
                 movable.push(Movable { cell, change });
             }
         };
-        for &cell in graph.surroundings_of(alpha) {
-            if self.clock.is_news(cell, alpha) {
-                reach(cell as usize, &mut movable);
-                let beside = graph.beside(cell as usize).iter();
-                beside.for_each(|b| reach(b.cell as usize, &mut movable));
-            }
+        for &cell in news {
+            reach(cell as usize, &mut movable);
+            let beside = graph.beside(cell as usize).iter();
+            beside.for_each(|b| reach(b.cell as usize, &mut movable));
         }
         let mut outermost = 0..movable.len();
         for _ in 0..RINGS {
@@ -177,25 +204,28 @@ impl<B: PairwiseCosts> Labelling<B> {
 
     /// The costs of moves of some cells to `alpha`, where all others stay.
     fn cut(&self, alpha: u32, movable: &[Movable]) -> MinimumCut {
-        let (energy, labels) = (&self.energy, &self.labels);
         let mut cut = MinimumCut::new(movable.len());
         for (n, &Movable { cell, change }) in movable.iter().enumerate() {
             cut.unary(n, self.costs[cell], change);
             for beside in self.graph.beside(cell) {
-                let edge = beside.edge as usize;
-                let [i, j] = energy.edges[edge];
-                let stay = || energy.border(edge, labels[i], labels[j]);
+                let mut labels = [cell, beside.cell as usize].map(|c| self.labels[c]);
+                if !beside.is_second {
+                    labels.reverse();
+                }
+                let [left, right] = labels;
+                let between = |left, right| self.borders.between(beside.edge as usize, left, right);
+                let stay = || between(left, right);
                 // What a border costs depends on which side of it a plane lies.
-                let i_moves = || energy.border(edge, alpha, labels[j]);
-                let j_moves = || energy.border(edge, labels[i], alpha);
+                let first_moves = || between(alpha, right);
+                let second_moves = || between(left, alpha);
                 match self.node(beside.cell as usize) {
                     // Both may move: handle the edge once, from its first cell.
-                    Some(other) if cell == i => {
-                        cut.pair(n, other as usize, stay(), j_moves(), i_moves());
+                    Some(other) if beside.is_second => {
+                        cut.pair(n, other as usize, stay(), second_moves(), first_moves());
                     }
                     Some(_) => {}
-                    None if cell == i => cut.unary(n, stay(), i_moves()),
-                    None => cut.unary(n, stay(), j_moves()),
+                    None if beside.is_second => cut.unary(n, stay(), first_moves()),
+                    None => cut.unary(n, stay(), second_moves()),
                 }
             }
         }
@@ -206,122 +236,6 @@ impl<B: PairwiseCosts> Labelling<B> {
     fn node(&self, cell: usize) -> Option<u32> {
         let node = self.nodes[cell].load(Ordering::Relaxed);
         (node != NO_NODE).then_some(node)
-    }
-}
-
-/// More than any sum of real costs.
-const BLOCKED: f64 = 1e6;
-
-/// A cell beside another one, and the edge between them.
-#[derive(Clone, Copy, Default)]
-struct Beside {
-    edge: u32,
-    cell: u32,
-}
-
-/// Which cells concern a plane, and which lie beside a cell.
-struct CellGraph {
-    /// The cells that each plane may cover at all and those beside them: where a change concerns
-    /// the plane.
-    surroundings_of_plane: Vec<Vec<u32>>,
-    /// The planes in groups that have no surroundings in common: a plane comes after all those
-    /// before it that concern the same cells.
-    independent_planes: Vec<Vec<u32>>,
-    all: Vec<u32>,
-    /// What lies beside cell c is `beside[starts[c]..starts[c + 1]]`.
-    starts: Vec<u32>,
-    beside: Vec<Beside>,
-    /// The most that a cell's borders can cost.
-    border_bound: Vec<f64>,
-}
-
-impl CellGraph {
-    fn new<B: PairwiseCosts>(energy: &Energy<B>, planes: u32) -> Self {
-        let cells = energy.unary.len();
-        let mut starts = vec![0u32; cells + 1];
-        let mut border_bound = vec![0.0; cells];
-        for (edge, pair) in energy.edges.iter().enumerate() {
-            for &cell in pair {
-                starts[cell + 1] += 1;
-                border_bound[cell] += energy.borders.upper_bound(edge);
-            }
-        }
-        for cell in 0..cells {
-            starts[cell + 1] += starts[cell];
-        }
-        let mut next = starts.clone();
-        let mut beside = vec![Beside::default(); 2 * energy.edges.len()];
-        for (edge, &[i, j]) in (0u32..).zip(&energy.edges) {
-            for (cell, other) in [(i, j), (j, i)] {
-                let cell_beside = Beside {
-                    edge,
-                    cell: other as u32,
-                };
-                beside[next[cell] as usize] = cell_beside;
-                next[cell] += 1;
-            }
-        }
-        let mut graph = Self {
-            surroundings_of_plane: Vec::new(),
-            independent_planes: Vec::new(),
-            all: (0..cells as u32).collect(),
-            starts,
-            beside,
-            border_bound,
-        };
-        graph.surroundings_of_plane = graph.surroundings(energy, planes);
-        graph.independent_planes = graph.independent(cells);
-        graph
-    }
-
-    fn independent(&self, cells: usize) -> Vec<Vec<u32>> {
-        let mut groups: Vec<Vec<u32>> = Vec::new();
-        // By cell the first group that may still concern it.
-        let mut open = vec![0; cells];
-        for (plane, cells) in (0..).zip(&self.surroundings_of_plane) {
-            let first = cells.iter().map(|&c| open[c as usize]).max().unwrap_or(0);
-            cells.iter().for_each(|&c| open[c as usize] = first + 1);
-            if groups.len() == first {
-                groups.push(Vec::new());
-            }
-            groups[first].push(plane);
-        }
-        groups
-    }
-
-    /// Per plane the cells that it may cover and those beside them, each once.
-    fn surroundings<B>(&self, energy: &Energy<B>, planes: u32) -> Vec<Vec<u32>> {
-        let mut cells_of_plane = vec![Vec::new(); planes as usize];
-        for (cell, candidates) in energy.unary.iter().enumerate() {
-            // Where a plane costs more than all borders of the cell, no plane is always better.
-            for (plane, _) in candidates.iter().filter(|c| c.1 <= self.border_bound[cell]) {
-                cells_of_plane[*plane as usize].push(cell as u32);
-            }
-        }
-        let mut listed_for = vec![NO_PLANE; energy.unary.len()];
-        let around = |(plane, own): (u32, Vec<u32>)| {
-            let beside = own.iter().flat_map(|&c| self.beside(c as usize));
-            let mut around: Vec<u32> = Vec::with_capacity(own.len());
-            for cell in own.iter().copied().chain(beside.map(|b| b.cell)) {
-                if listed_for[cell as usize] != plane {
-                    listed_for[cell as usize] = plane;
-                    around.push(cell);
-                }
-            }
-            around.shrink_to_fit();
-            around
-        };
-        (0..).zip(cells_of_plane).map(around).collect()
-    }
-
-    fn beside(&self, cell: usize) -> &[Beside] {
-        &self.beside[self.starts[cell] as usize..self.starts[cell + 1] as usize]
-    }
-
-    /// "No plane" may cover any cell.
-    fn surroundings_of(&self, plane: u32) -> &[u32] {
-        let of_plane = self.surroundings_of_plane.get(plane as usize);
-        of_plane.unwrap_or(&self.all)
     }
 }
 
@@ -388,6 +302,10 @@ mod tests {
                 .map_or(*unsupported, |s| s.2)
         }
 
+        fn reorder(&mut self, order: &[usize]) {
+            self.0 = order.iter().map(|&edge| self.0[edge].clone()).collect();
+        }
+
         fn upper_bound(&self, edge: usize) -> f64 {
             let (unsupported, supported) = &self.0[edge];
             supported.iter().fold(*unsupported, |most, s| most.max(s.2))
@@ -395,12 +313,17 @@ mod tests {
     }
 
     /// What a border costs may depend on which of two planes lies to its left.
+    #[derive(Clone)]
     struct Directed(Vec<[[f64; 4]; 4]>);
 
     impl PairwiseCosts for Directed {
         fn cost(&self, edge: usize, left: u32, right: u32) -> f64 {
             let [left, right] = [left, right].map(|label| label.min(3) as usize);
             self.0[edge][left][right]
+        }
+
+        fn reorder(&mut self, order: &[usize]) {
+            self.0 = order.iter().map(|&edge| self.0[edge]).collect();
         }
 
         fn upper_bound(&self, _: usize) -> f64 {
@@ -421,12 +344,12 @@ mod tests {
                 edges: (1..16).map(|i| [i - 1, i]).collect(),
                 borders: Directed(borders.collect()),
             };
-            let mut labelling = Labelling::new(energy, 3);
-            let mut before = labelling.energy.of(&labelling.labels);
+            let mut labelling = Labelling::new(energy.clone(), 3);
+            let mut before = energy.of(&labelling.labels());
             for plane in [0, 1, 2, NO_PLANE, 0, 1, 2, NO_PLANE] {
                 let (changed, time) = (labelling.expand(plane), labelling.clock.now + 1);
                 labelling.clock.tried(plane, &changed, time);
-                let after = labelling.energy.of(&labelling.labels);
+                let after = energy.of(&labelling.labels());
                 assert!(after < before + 1e-4, "seed {seed}: {before} to {after}");
                 before = after;
             }
@@ -445,7 +368,7 @@ mod tests {
     fn from_nothing(energy: &Energy<Table>) -> Vec<u32> {
         let mut labelling = Labelling::new(energy.clone(), 2);
         labelling.minimise();
-        labelling.labels
+        labelling.labels()
     }
 
     #[test]
@@ -495,17 +418,76 @@ mod tests {
                 .collect();
             let borders = (0..11).map(|_| (0.1 + 0.3 * next(), vec![])).collect();
             let energy: Energy<Table> = row(unary, borders);
-            let mut labelling = Labelling::new(energy, 4);
+            let mut labelling = Labelling::new(energy.clone(), 4);
             labelling.minimise();
-            let excluded = labelling.labels[6];
-            let its = |c: &usize| labelling.labels[*c] == excluded;
+            let labels = labelling.labels();
+            let excluded = labels[6];
+            let its = |c: &usize| labels[*c] == excluded;
             let cells: Vec<usize> = (0..12).filter(its).collect();
             labelling.exclude(excluded, &cells);
             labelling.minimise();
-            let found = labelling.energy.of(&labelling.labels);
+            let found = energy.of(&labelling.labels());
             labelling.clock = ExpansionHistory::new(12, 4);
             labelling.minimise();
-            assert_eq!(labelling.energy.of(&labelling.labels), found, "seed {seed}");
+            assert_eq!(energy.of(&labelling.labels()), found, "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn the_order_of_cells_and_edges_does_not_matter() {
+        const CELLS: usize = 30;
+        for seed in 1..40u32 {
+            let mut next = uniform(seed.wrapping_mul(2_654_435_761));
+            let mut draw = |below: usize| (next() * below as f64) as usize;
+            // By place: a row, and pairs across it, so that not all are one behind the other.
+            let row = (1..CELLS).map(|i| [i - 1, i]);
+            let across = (0..CELLS).map(|i| [i, (i + 2 + i * seed as usize % 5) % CELLS]);
+            let edges: Vec<[usize; 2]> = row.chain(across).collect();
+            let mut shuffled = |count: usize| {
+                let mut order: Vec<usize> = (0..count).collect();
+                (1..count).for_each(|i| order.swap(i, draw(i + 1)));
+                order
+            };
+            let (place_of, edge_of) = (shuffled(CELLS), shuffled(edges.len()));
+            let unary = |_| (0..4).map(|p| (p, 2.0 * next() - 1.2)).collect();
+            let unary: Vec<Vec<(u32, f64)>> = (0..CELLS).map(unary).collect();
+            let borders = edges
+                .iter()
+                .map(|_| [[0.0; 4]; 4].map(|row| row.map(|_| 0.4 * next())));
+            let borders: Vec<[[f64; 4]; 4]> = borders.collect();
+            let other = Energy {
+                unary: place_of.iter().map(|&place| unary[place].clone()).collect(),
+                edges: (edge_of.iter())
+                    .map(|&e| edges[e].map(|p| place_of.iter().position(|q| *q == p).unwrap()))
+                    .collect(),
+                borders: Directed(edge_of.iter().map(|&e| borders[e]).collect()),
+            };
+            let energy = Energy {
+                unary,
+                edges,
+                borders: Directed(borders),
+            };
+            let mut labellings = [energy, other].map(|energy| Labelling::new(energy, 4));
+            let compare = |[a, b]: &[Labelling<Directed>; 2], part: &str| {
+                let (a, b) = (a.labels(), b.labels());
+                let a: Vec<u32> = place_of.iter().map(|&place| a[place]).collect();
+                assert_eq!(a, b, "{part}, seed {seed}");
+                b
+            };
+            labellings.iter_mut().for_each(Labelling::minimise);
+            let found = compare(&labellings, "minimised");
+            // By cell of the second energy.
+            let its: Vec<usize> = (0..CELLS).filter(|&c| found[c] == found[6]).collect();
+            labellings[0].exclude(
+                found[6],
+                &its.iter().map(|&c| place_of[c]).collect::<Vec<_>>(),
+            );
+            labellings[1].exclude(found[6], &its);
+            compare(&labellings, "excluded");
+            labellings.iter_mut().for_each(Labelling::minimise);
+            let found_again = compare(&labellings, "minimised again");
+            let is_back = |&c: &usize| found[c] != NO_PLANE && found_again[c] == found[c];
+            assert!(!its.iter().any(is_back), "seed {seed}");
         }
     }
 

@@ -1,12 +1,13 @@
 //! The minimum cut behind a [`super::cut`], by a maximum flow.
 //!
 //! Nodes hold a surplus or a deficit and surpluses flow along arcs to deficits (Goldberg and Tarjan
-//! 1988: a node may keep what does not get on). Distances to the nearest deficit are taken anew in
-//! rounds, from the deficits outwards and no farther than the nearest surplus, because most
-//! deficits are met by their neighbours. Half of every arc is filled to begin with: where two cells
+//! 1988: a node may keep what does not get on). Deficits are few, so it is they that pull, first in
+//! first out, from what is nearer to a surplus; what lies beyond a gap in the distances is left
+//! alone (Cherkassky and Goldberg 1997). Half of every arc is filled to begin with: where two cells
 //! of one label may move together, this cancels what each would pay without the other, and few
-//! deficits are left. A library's flow, which visited every arc in every round, took six times as
-//! long.
+//! deficits are left.
+
+use std::collections::VecDeque;
 
 /// From, to, capacity in units.
 pub(super) type Arc = (usize, usize, i64);
@@ -26,15 +27,12 @@ struct HalfArc {
     to: u32,
     /// The same arc as the other end sees it.
     twin: u32,
-    /// Residual capacity in that direction.
+    /// Residual capacity from the other end to this one.
     left: i64,
 }
 
-/// No distance yet.
+/// No surplus reaches it.
 const FAR: u32 = u32::MAX;
-/// Distances are taken so much farther than the nearest surplus. Of 0, 1, 2, 4, 8 and 16 the third
-/// took least time.
-const BEYOND: u32 = 2;
 
 impl Flow {
     /// Half of every arc is filled.
@@ -58,12 +56,12 @@ impl Flow {
             halves[out as usize] = HalfArc {
                 to: to as u32,
                 twin: back,
-                left: capacity - filled,
+                left: filled,
             };
             halves[back as usize] = HalfArc {
                 to: from as u32,
                 twin: out,
-                left: filled,
+                left: capacity - filled,
             };
             surplus[from] -= filled;
             surplus[to] += filled;
@@ -77,65 +75,60 @@ impl Flow {
 
     /// Lets everything flow that can; returns the deficit that is left.
     pub(super) fn run(&mut self) -> i64 {
-        let mut wanting: Vec<u32> = (0..self.surplus.len() as u32)
-            .filter(|&i| self.surplus[i as usize] < 0)
-            .collect();
-        let mut distance = vec![FAR; self.surplus.len()];
-        let mut near = Vec::new();
-        while self.approach(&wanting, &mut distance, &mut near) {
-            // The farthest first: what they give flows on from the next ones in the same round.
-            for &node in near[wanting.len()..].iter().rev() {
-                self.push(node, &distance);
+        let nodes = 0..self.surplus.len() as u32;
+        let mut wanting: VecDeque<u32> = nodes.filter(|&i| self.surplus[i as usize] < 0).collect();
+        // From the nearest surplus, along the flow; never more than it is.
+        let mut distance: Vec<u32> = self.surplus.iter().map(|s| u32::from(*s <= 0)).collect();
+        let mut at_distance = vec![0u32; self.surplus.len() + 2];
+        distance.iter().for_each(|&d| at_distance[d as usize] += 1);
+        let mut left = 0;
+        while let Some(node) = wanting.pop_front() {
+            self.pull(node, &distance, &mut wanting);
+            let (surplus, here) = (self.surplus[node as usize], distance[node as usize]);
+            if surplus == 0 || here == FAR {
+                left -= surplus;
+                continue;
             }
-            near.iter().for_each(|&i| distance[i as usize] = FAR);
-            wanting.retain(|&i| self.surplus[i as usize] < 0);
+            let inwards = self.arcs_of(node).filter(|&k| self.arcs[k].left > 0);
+            let nearest = inwards.map(|k| distance[self.arcs[k].to as usize]).min();
+            let farther = nearest.map_or(FAR, |d| d.saturating_add(1));
+            distance[node as usize] = farther;
+            if let Some(count) = at_distance.get_mut(farther as usize) {
+                *count += 1;
+            }
+            at_distance[here as usize] -= 1;
+            if at_distance[here as usize] == 0 {
+                // Nothing flows across the gap any more.
+                let beyond = distance.iter_mut().filter(|d| **d > here);
+                beyond.for_each(|d| *d = FAR);
+                at_distance[here as usize..].fill(0);
+            }
+            wanting.push_back(node);
         }
-        -(wanting.iter().map(|&i| self.surplus[i as usize])).sum::<i64>()
+        left
     }
 
-    /// Lists the nodes near those that want, by their distance against the flow; false when no
-    /// surplus can reach any.
-    fn approach(&self, wanting: &[u32], distance: &mut [u32], near: &mut Vec<u32>) -> bool {
-        near.clear();
-        near.extend(wanting);
-        near.iter().for_each(|&i| distance[i as usize] = 0);
-        let (mut at, mut last) = (0, FAR);
-        while at < near.len() && distance[near[at] as usize] < last {
-            let here = distance[near[at] as usize];
-            for arc in self.arcs_of(near[at]) {
-                let arc = &self.arcs[arc];
-                let node = arc.to as usize;
-                if distance[node] == FAR && self.arcs[arc.twin as usize].left > 0 {
-                    distance[node] = here + 1;
-                    near.push(arc.to);
-                    if self.surplus[node] > 0 {
-                        last = last.min(here + 1 + BEYOND);
-                    }
-                }
-            }
-            at += 1;
-        }
-        last != FAR
-    }
-
-    /// Moves the surplus of a node to nodes that are nearer to those that want.
-    fn push(&mut self, node: u32, distance: &[u32]) {
-        let mut surplus = self.surplus[node as usize];
-        let nearer = distance[node as usize].wrapping_sub(1);
+    /// Meets the deficit of a node from nodes that are nearer to a surplus.
+    fn pull(&mut self, node: u32, distance: &[u32], wanting: &mut VecDeque<u32>) {
+        let mut deficit = -self.surplus[node as usize];
         for k in self.arcs_of(node) {
-            if surplus <= 0 {
-                break;
-            }
             let HalfArc { to, twin, left } = self.arcs[k];
-            if left > 0 && distance[to as usize] == nearer {
-                let moved = surplus.min(left);
+            if left > 0 && distance[to as usize] < distance[node as usize] {
+                let moved = deficit.min(left);
                 self.arcs[k].left -= moved;
                 self.arcs[twin as usize].left += moved;
-                self.surplus[to as usize] += moved;
-                surplus -= moved;
+                let surplus = &mut self.surplus[to as usize];
+                if (0..moved).contains(surplus) {
+                    wanting.push_back(to);
+                }
+                *surplus -= moved;
+                deficit -= moved;
+                if deficit == 0 {
+                    break;
+                }
             }
         }
-        self.surplus[node as usize] = surplus;
+        self.surplus[node as usize] = -deficit;
     }
 
     /// The nodes that what is left of the surplus could still reach, once nothing flows any more:
@@ -147,7 +140,7 @@ impl Flow {
             .collect();
         while let Some(node) = open.pop() {
             for arc in &self.arcs[self.arcs_of(node)] {
-                if arc.left > 0 && !reached[arc.to as usize] {
+                if self.arcs[arc.twin as usize].left > 0 && !reached[arc.to as usize] {
                     reached[arc.to as usize] = true;
                     open.push(arc.to);
                 }
@@ -198,6 +191,34 @@ mod tests {
             assert_eq!(flow.run(), gain(&surplus, &arcs, best));
             let reached = flow.reached();
             assert!((0..NODES).all(|i| reached[i] != (best >> i & 1 == 1)));
+        }
+    }
+
+    #[test]
+    fn the_flow_in_a_large_grid_is_the_greatest() {
+        const SIDE: usize = 30;
+        for seed in 1..30 {
+            let mut next = uniform(seed);
+            let mut draw = |levels: f64| (next() * levels) as i64;
+            // Blocks of deficits that their surroundings cannot meet, and single ones they can.
+            let is_in_block = |i: usize| (i % SIDE / 8 + i / SIDE / 8).is_multiple_of(3);
+            let surplus =
+                (0..SIDE * SIDE).map(|i| draw(40.0) - if is_in_block(i) { 25 } else { 15 });
+            let surplus: Vec<i64> = surplus.collect();
+            let across = (0..SIDE * SIDE - 1).filter(|i| i % SIDE + 1 < SIDE);
+            let across = across.map(|i| (i, i + 1));
+            let pairs = across.chain((0..SIDE * (SIDE - 1)).map(|i| (i, i + SIDE)));
+            let arcs: Vec<Arc> = pairs.map(|(i, j)| (i, j, draw(30.0))).collect();
+            let mut flow = Flow::new(surplus.clone(), &arcs);
+            let left = flow.run();
+            let reached = flow.reached();
+            assert!(left > 0 && reached.contains(&true));
+            // No cut gains more than what is left of the deficits: one that does is the best.
+            let own = (0..SIDE * SIDE)
+                .filter(|i| !reached[*i])
+                .map(|i| -surplus[i]);
+            let torn = arcs.iter().filter(|a| reached[a.0] && !reached[a.1]);
+            assert_eq!(left, own.sum::<i64>() - torn.map(|a| a.2).sum::<i64>());
         }
     }
 

@@ -17,6 +17,7 @@
 //!
 //! ```text
 //! energy     data and border terms
+//! graph      cells, their neighbours, and the planes that may cover them
 //! flow       maximum flow
 //! cut        one expansion as a minimum cut
 //! expansion  expansions until none improves
@@ -28,6 +29,7 @@ mod cut;
 mod energy;
 mod expansion;
 mod flow;
+mod graph;
 
 pub(crate) use energy::{Energy, NO_PLANE, PairwiseCosts};
 pub(crate) use expansion::Labelling;

@@ -120,6 +120,9 @@ impl PairwiseCosts for Steps {
         self.0 * f64::from(left.abs_diff(right)) / MEAN_STEP
     }
 
+    // All edges cost the same.
+    fn reorder(&mut self, _: &[usize]) {}
+
     fn upper_bound(&self, _: usize) -> f64 {
         self.0 * MOST_HEIGHTS / MEAN_STEP
     }

@@ -69,12 +69,18 @@ impl PairwiseCosts for BorderCosts {
         }
     }
 
+    fn reorder(&mut self, order: &[usize]) {
+        let in_order = order.iter().map(|&edge| self.borders[edge].clone());
+        self.borders = in_order.collect();
+    }
+
     fn upper_bound(&self, edge: usize) -> f64 {
         self.borders[edge].full
     }
 }
 
 /// A border between two cells.
+#[derive(Clone)]
 struct CellBorder {
     /// Cost when nothing supports the border, nats.
     full: f64,
