@@ -10,9 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::Point2;
 use serde::Serialize;
 
-use super::borders::{
-    Arrangement, Border, BorderCosts, BorderKind, LineIndex, border_lines, bounding_lines,
-};
+use super::borders::{Arrangement, Border, BorderKind, LineIndex, border_lines, bounding_lines};
 use super::competing_planes::CompetingPlanes;
 use super::delineation::{Outline, delineate};
 use super::dominated::without_dominated;
@@ -272,7 +270,7 @@ struct Verified {
 
 /// Labels, delineates and verifies until no facet is rejected.
 fn solve(
-    labelling: &mut Labelling<BorderCosts>,
+    labelling: &mut Labelling,
     competing: &CompetingPlanes,
     groups: &[PlaneGroup],
     ground: &Ground,

@@ -4,7 +4,7 @@
 pub(crate) const NO_PLANE: u32 = u32::MAX;
 
 /// What different labels on both sides of a border cost.
-pub(crate) trait PairwiseCosts: Sync {
+pub(crate) trait PairwiseCosts: Send + Sync {
     /// Cost of `left` and `right`, which differ, on the first and the second cell of an edge.
     fn cost(&self, edge: usize, left: u32, right: u32) -> f64;
 
@@ -33,6 +33,20 @@ pub(crate) struct Energy<B> {
     pub edges: Vec<[usize; 2]>,
     /// The costs of the edges.
     pub borders: B,
+}
+
+/// An energy with borders of any kind, so that the code that minimises it is there once.
+pub(super) type AnyEnergy = Energy<Box<dyn PairwiseCosts>>;
+
+impl<B: PairwiseCosts + 'static> Energy<B> {
+    /// The same energy, with borders of any kind.
+    pub(super) fn of_any_borders(self) -> AnyEnergy {
+        Energy {
+            unary: self.unary,
+            edges: self.edges,
+            borders: Box::new(self.borders),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::cut::MinimumCut;
-use super::energy::{Energy, NO_PLANE, PairwiseCosts};
+use super::energy::{AnyEnergy, Energy, NO_PLANE, PairwiseCosts};
 use super::graph::{CellGraph, in_order_of_neighbours};
 
 /// How far from a change, in cells, others may move with it. Assumption: what needs more cells to
@@ -13,8 +13,8 @@ const RINGS: usize = 4;
 
 /// A labelling on its way to the least energy. It records which expansions were tried, so that
 /// after a small change only the planes and cells around it are tried again.
-pub(crate) struct Labelling<B> {
-    borders: B,
+pub(crate) struct Labelling {
+    borders: Box<dyn PairwiseCosts>,
     graph: CellGraph,
     /// The cell in here of each cell of the energy.
     cells: Vec<u32>,
@@ -41,9 +41,13 @@ struct Movable {
     change: f64,
 }
 
-impl<B: PairwiseCosts> Labelling<B> {
+impl Labelling {
     /// No plane covers any cell; `planes` is the number of planes.
-    pub(crate) fn new(energy: Energy<B>, planes: u32) -> Self {
+    pub(crate) fn new<B: PairwiseCosts + 'static>(energy: Energy<B>, planes: u32) -> Self {
+        Self::of(energy.of_any_borders(), planes)
+    }
+
+    fn of(energy: AnyEnergy, planes: u32) -> Self {
         let (energy, cells) = in_order_of_neighbours(energy);
         let none = |unset: u32| cells.iter().map(|_| AtomicU32::new(unset)).collect();
         Self {
@@ -468,7 +472,7 @@ mod tests {
                 borders: Directed(borders),
             };
             let mut labellings = [energy, other].map(|energy| Labelling::new(energy, 4));
-            let compare = |[a, b]: &[Labelling<Directed>; 2], part: &str| {
+            let compare = |[a, b]: &[Labelling; 2], part: &str| {
                 let (a, b) = (a.labels(), b.labels());
                 let a: Vec<u32> = place_of.iter().map(|&place| a[place]).collect();
                 assert_eq!(a, b, "{part}, seed {seed}");
@@ -495,7 +499,8 @@ mod tests {
     fn planes_of_a_group_have_no_cell_in_common_and_keep_their_order_elsewhere() {
         let near = |cell: usize, plane: u32| cell.abs_diff(3 * plane as usize % 20) < 3;
         let unary = (0..22).map(|c| (0..20).filter(|&p| near(c, p)).map(|p| (p, -1.0)).collect());
-        let graph = CellGraph::new(&row(unary.collect(), vec![(1.0, vec![]); 21]), 20);
+        let energy = row(unary.collect(), vec![(1.0, vec![]); 21]);
+        let graph = CellGraph::new(&energy.of_any_borders(), 20);
         let groups = &graph.independent_planes;
         assert!(groups.len() < 20);
         let mut group_of = [usize::MAX; 20];

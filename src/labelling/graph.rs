@@ -1,6 +1,6 @@
 //! The cells and edges of an energy as expansions need them.
 
-use super::energy::{Energy, NO_PLANE, PairwiseCosts};
+use super::energy::{AnyEnergy, Energy, NO_PLANE};
 
 /// More than any sum of real costs.
 const BLOCKED: f64 = 1e6;
@@ -75,7 +75,7 @@ impl Neighbours {
 
 /// The energy with its cells in an order in which neighbours lie near each other in memory, and
 /// the new place of each cell.
-pub(super) fn in_order_of_neighbours<B: PairwiseCosts>(energy: Energy<B>) -> (Energy<B>, Vec<u32>) {
+pub(super) fn in_order_of_neighbours(energy: AnyEnergy) -> (AnyEnergy, Vec<u32>) {
     let Energy {
         mut unary,
         edges,
@@ -185,7 +185,7 @@ pub(super) struct CellGraph {
 }
 
 impl CellGraph {
-    pub(super) fn new<B: PairwiseCosts>(energy: &Energy<B>, planes: u32) -> Self {
+    pub(super) fn new(energy: &AnyEnergy, planes: u32) -> Self {
         let cells = energy.unary.len();
         let mut border_bound = vec![0.0; cells];
         for (edge, pair) in energy.edges.iter().enumerate() {
