@@ -117,6 +117,16 @@ const SAMPLES: usize = 6;
 /// of normal-angle photographs is 0.3.
 pub(crate) const LEAST_SLOPE: f64 = 0.1;
 
+/// How much of a parallax a view has with those that are chosen, 0 to 1, by the slopes of their
+/// rays: photographs from one place agree about every plane.
+pub(super) fn share_of_parallax<'a>(
+    slope: &Vector2<f64>,
+    chosen: impl Iterator<Item = &'a Vector2<f64>>,
+) -> f64 {
+    let apart = chosen.map(|other| (slope - other).norm());
+    apart.fold(LEAST_SLOPE, smaller) / LEAST_SLOPE
+}
+
 /// The views to compare.
 struct ViewsOfPlane {
     views: Vec<ViewId>,
@@ -125,18 +135,16 @@ struct ViewsOfPlane {
 }
 
 /// At most [`MAX_VIEWS`], such that every part of the window is seen by as many as possible,
-/// frontal ones first. Crops of large photographs often show a part only. Two photographs from one
-/// place agree about every plane, so that one of them is enough.
+/// frontal ones first. Crops of large photographs often show a part only.
 fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> ViewsOfPlane {
     let candidates: Vec<CandidateView> = (scene.view_ids())
         .filter_map(|v| CandidateView::new(v, scene.camera(v), plane, grid))
         .collect();
-    // How much of a parallax a view has with those that are chosen, 0 to 1.
     let apart = |i: usize, chosen: &[usize]| {
-        let slopes = chosen
-            .iter()
-            .map(|&c| (candidates[i].slope - candidates[c].slope).norm());
-        slopes.fold(LEAST_SLOPE, smaller) / LEAST_SLOPE
+        share_of_parallax(
+            &candidates[i].slope,
+            chosen.iter().map(|&c| &candidates[c].slope),
+        )
     };
     let mut seen_by = [0u32; SAMPLES * SAMPLES];
     let mut chosen: Vec<usize> = Vec::new();

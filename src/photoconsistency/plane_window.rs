@@ -1,14 +1,14 @@
 //! Photo-consistency of a plane in a single window: what the map of the plane has at one cell,
 //! for searches over planes that differ from place to place.
 
-use nalgebra::{Matrix3, Point2, Point3};
+use nalgebra::{Matrix3, Point2, Point3, Vector2};
 use wide::f32x8;
 
 use super::box_sum::WINDOW;
 use super::consistency_map::MAX_VIEWS;
 use super::pairwise_correlation::LEAST_VARIANCE;
 use super::plan_grid::{CELL_SAMPLES, image_from_plan};
-use super::plane_consistency::residual_variance;
+use super::plane_consistency::{residual_variance, share_of_parallax};
 use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::math::larger;
@@ -63,19 +63,30 @@ impl<'s> WindowMatcher<'s> {
     }
 
     /// The views that show all of a window around a point, the steepest first: at most
-    /// [`MAX_VIEWS`].
+    /// [`MAX_VIEWS`], one of those from one place.
     pub(crate) fn views_of(&self, middle: &Point3<f64>) -> Vec<ViewId> {
-        let steepness = |v: ViewId| {
+        let ray = |v: ViewId| {
             let camera = self.scene.camera(v);
             let margin = WINDOW as f64 * self.step / camera.ground_pixel(middle);
             let at = camera.project(middle)?;
             let ray = (camera.center - middle).normalize();
-            camera.contains(&at, margin).then_some((v, ray.z))
+            (camera.contains(&at, margin)).then(|| (v, ray.z, ray.xy() / ray.z))
         };
-        let mut views: Vec<(ViewId, f64)> = self.scene.view_ids().filter_map(steepness).collect();
-        views.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        views.truncate(MAX_VIEWS);
-        views.into_iter().map(|(v, _)| v).collect()
+        let rays: Vec<(ViewId, f64, Vector2<f64>)> =
+            self.scene.view_ids().filter_map(ray).collect();
+        let mut chosen: Vec<(ViewId, Vector2<f64>)> = Vec::new();
+        while chosen.len() < MAX_VIEWS {
+            let gain = |(v, steepness, slope): &(ViewId, f64, Vector2<f64>)| {
+                let parallax = share_of_parallax(slope, chosen.iter().map(|c| &c.1));
+                (*v, *slope, steepness * parallax)
+            };
+            let best = (rays.iter().map(gain))
+                .filter(|(.., gain)| *gain > 0.0)
+                .max_by(|a, b| a.2.total_cmp(&b.2).then(b.0.cmp(&a.0)));
+            let Some((view, slope, _)) = best else { break };
+            chosen.push((view, slope));
+        }
+        chosen.into_iter().map(|(v, _)| v).collect()
     }
 
     /// The agreement of some views on a plane around a place; `None` where fewer than two see it.
