@@ -28,6 +28,14 @@ pub fn map<T: Sync, R: Send>(items: &[T], f: impl Fn(usize, &T) -> R + Sync) -> 
         .collect()
 }
 
+/// How many items of a [`map`] are worked on at a time.
+pub fn workers() -> usize {
+    #[cfg(not(target_arch = "wasm32"))]
+    return rayon::current_num_threads();
+    #[cfg(target_arch = "wasm32")]
+    return 1;
+}
+
 /// The progress of a map that reports none.
 pub const SILENT: Range<f64> = 0.0..0.0;
 

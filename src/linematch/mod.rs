@@ -6,6 +6,7 @@
 //!    -> pairs       two views: epipolar beam, correlation of both sides (line_strip)         3.1
 //!    -> triples     third views: trifocal transfer, a segment at the predicted position      3.2
 //!    -> selection   winner takes all; each winner is completed over all views (nview)    3.2 - 3.4
+//!       ahead          bundles that come next, completed on all cores
 //!    -> join        lines that reproject onto each other become one                          3.4
 //!
 //! drawn             the line of an edge that somebody draws in one view
@@ -24,6 +25,7 @@
 //! Invariant: a segment belongs to at most one line. The result does not depend on the order of the
 //! hypotheses.
 
+mod ahead;
 mod drawn;
 mod height;
 mod index;

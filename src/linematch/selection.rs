@@ -9,7 +9,8 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::nview::{CompletedLine, MatchContext, MatchRejection, complete_line};
+use super::ahead::{Ahead, Hypothesis};
+use super::nview::{CompletedLine, MatchContext, MatchRejection};
 use super::pairs::{SegmentPair, SegmentPairs};
 use super::pass::Pass;
 use super::segment_geometry::SegmentRef;
@@ -53,6 +54,7 @@ pub(super) fn winner_takes_all(
     let mut queue: BinaryHeap<QueuedBundle> = (weighed.into_iter().enumerate())
         .map(|(bundle, evidence)| QueuedBundle { evidence, bundle })
         .collect();
+    let mut ahead = Ahead::default();
     while let Some(entry) = queue.pop() {
         let bundle = &bundles[entry.bundle];
         let pair = &pairs.pairs[bundle.pair];
@@ -78,20 +80,39 @@ pub(super) fn winner_takes_all(
                 continue;
             }
         }
-        let mut seeds = vec![pair.a, pair.b];
-        seeds.extend(rest.verified.iter().map(|v| v.segment));
         let taken = |s: SegmentRef| selection.owner(s).is_some();
-        let outcome = match complete_line(context, &pair.overlap, &seeds, &taken) {
+        let mut passed = Vec::new();
+        let next = std::iter::from_fn(|| {
+            let next = queue.pop()?;
+            passed.push(next);
+            let hypothesis = hypothesis(pairs, next.bundle, &bundles[next.bundle]);
+            let has_all = !hypothesis.seeds.iter().any(|s| taken(*s));
+            Some(has_all.then_some(hypothesis))
+        });
+        let turn = hypothesis(pairs, entry.bundle, &rest);
+        let completed = ahead.complete(context, turn, next, &taken);
+        queue.extend(passed);
+        outcomes[entry.bundle] = match completed {
             Ok(line) => selection.accept(line),
             Err(reason) => BundleOutcome::Rejected(reason),
         };
-        outcomes[entry.bundle] = outcome;
         if pass == Pass::First {
             reached(0.6 + 0.4 * (1.0 - queue.len() as f64 / bundles.len() as f64));
         }
     }
     selection.outcomes.extend(outcomes);
     Ok(())
+}
+
+/// The bundle of a pair as the completion of its line takes it.
+fn hypothesis(pairs: &SegmentPairs, number: usize, bundle: &TripleBundle) -> Hypothesis {
+    let pair = &pairs.pairs[bundle.pair];
+    let verified = bundle.verified.iter().map(|v| v.segment);
+    Hypothesis {
+        bundle: number,
+        overlap: pair.overlap,
+        seeds: [pair.a, pair.b].into_iter().chain(verified).collect(),
+    }
 }
 
 /// Evidence for the line of a bundle: its length in the first view times the sum over the views of
@@ -281,6 +302,38 @@ mod tests {
                 let selection = roof.select(&pairs, &[bundle], roof.nothing_taken());
                 assert_eq!(selection.outcomes, [BundleOutcome::Accepted(0)]);
             }
+        }
+    }
+
+    #[test]
+    fn it_does_not_matter_how_many_bundles_are_completed_ahead() {
+        let roof = PlantedRoof::new();
+        let mut next = crate::testing::uniform(11);
+        let (mut pairs, mut bundles) = (Vec::new(), Vec::new());
+        for edge in 0..planted::edges().len() as u32 {
+            for views in [[0, 1], [0, 2], [1, 3], [2, 4], [3, 4]] {
+                let others = (0..5).filter(|v| !views.contains(v));
+                let verified: Vec<SegmentRef> = others
+                    .filter(|_| next() < 0.6)
+                    .map(|v| name(v, edge))
+                    .collect();
+                let score = 0.5 + 0.4 * next();
+                bundles.push(bundle(pairs.len(), &verified, score));
+                pairs.push(pair(edge, views, score));
+            }
+        }
+        let pairs = all(pairs);
+        let selected = |workers: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(workers);
+            let select = || roof.select(&pairs, &bundles, roof.nothing_taken());
+            let found = pool.build().unwrap().install(select);
+            let lines: Vec<Segment3> = found.lines.iter().map(|l| l.segment).collect();
+            (found.outcomes, found.owners, lines)
+        };
+        let one_by_one = selected(1);
+        assert_eq!(one_by_one.2.len(), 4);
+        for workers in [2, 5] {
+            assert_eq!(selected(workers), one_by_one);
         }
     }
 
