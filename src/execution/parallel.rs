@@ -29,11 +29,15 @@ pub fn map<T: Sync, R: Send>(items: &[T], f: impl Fn(usize, &T) -> R + Sync) -> 
 }
 
 /// How many items of a [`map`] are worked on at a time.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn workers() -> usize {
-    #[cfg(not(target_arch = "wasm32"))]
-    return rayon::current_num_threads();
-    #[cfg(target_arch = "wasm32")]
-    return 1;
+    rayon::current_num_threads()
+}
+
+/// How many items of a [`map`] are worked on at a time.
+#[cfg(target_arch = "wasm32")]
+pub fn workers() -> usize {
+    1
 }
 
 /// The progress of a map that reports none.

@@ -107,7 +107,8 @@ impl Ahead {
     }
 }
 
-#[cfg(test)]
+// In wasm nothing is completed ahead.
+#[cfg(all(test, not(target_arch = "wasm32")))]
 mod tests {
     use super::super::testing::PlantedRoof;
     use super::*;

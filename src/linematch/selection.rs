@@ -305,6 +305,7 @@ mod tests {
         }
     }
 
+    #[cfg(not(target_arch = "wasm32"))]
     #[test]
     fn it_does_not_matter_how_many_bundles_are_completed_ahead() {
         let roof = PlantedRoof::new();
