@@ -108,7 +108,8 @@ impl Ahead {
 }
 
 // In wasm nothing is completed ahead.
-#[cfg(all(test, not(target_arch = "wasm32")))]
+#[cfg(test)]
+#[cfg(not(target_arch = "wasm32"))]
 mod tests {
     use super::super::testing::PlantedRoof;
     use super::*;
