@@ -9,7 +9,7 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, Envelope, RTree, RTreeObject};
 
 /// Numbered boxes.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct PlanIndex {
     boxes: Vec<Numbered>,
     /// The tree of the first boxes; the others were inserted later.

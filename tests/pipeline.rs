@@ -398,18 +398,53 @@ fn shards_that_come_twice_do_not_mix_up_the_planes() {
     let mut run = Run::new(scene, Params::default());
     run.step(Stage::HalfPlanes, &silent());
     let mut merged = MergedShards::default();
-    for map in Stage::Facets.shard_maps() {
-        let mut shard = |k| run.run_shard(Stage::Facets, map, [k, 2], merged.clone(), &silent());
+    for map in Stage::Groups.shard_maps() {
+        let mut shard = |k| run.run_shard(Stage::Groups, map, [k, 2], merged.clone(), &silent());
         let dealt = [shard(0), shard(1)];
         for shard in dealt.iter().chain(&dealt) {
             merged.merge(map, shard);
         }
     }
     let mut alone = run.clone();
-    run.step_merged(Stage::Facets, merged, &silent());
+    run.step_merged(Stage::Groups, merged, &silent());
+    run.step(Stage::Facets, &silent());
     alone.step(Stage::Facets, &silent());
     let facets = |run: &Run| format!("{:?}", run.results().facets.as_ref().unwrap().value);
     assert_eq!(facets(&run), facets(&alone));
+}
+
+/// A stage that reads a parameter and does not say so keeps a result of the old value.
+#[test]
+fn new_parameters_of_roofs_give_what_a_new_run_gives() {
+    let (scene, _) = l_scene(SIZE_PX);
+    let mut before = Run::new(scene, Params::default());
+    before.step(Stage::Dense, &silent());
+    let mut done = before.clone();
+    done.step(Stage::Facets, &silent());
+    let found = |mut run: Run, params: &Params| {
+        run.set_params(params.clone());
+        run.step(Stage::Facets, &silent());
+        let (groups, facets) = (&run.results().groups, &run.results().facets);
+        let (groups, facets) = (groups.as_ref().unwrap(), facets.as_ref().unwrap());
+        let traces = serde_json::to_string(&(&groups.trace, &facets.trace)).unwrap();
+        format!("{:?} {traces}", facets.value)
+    };
+    let numbers = serde_json::to_value(Params::default()).unwrap();
+    let mut changed = 0;
+    let numbers = numbers["roof"].as_object().unwrap().iter();
+    for (name, value) in numbers.filter_map(|(name, v)| Some((name, v.as_f64()?))) {
+        let mut params = serde_json::to_value(Params::default()).unwrap();
+        params["roof"][name] = (1.7 * value + 0.8).into();
+        let params: Params = serde_json::from_value(params).unwrap();
+        let again = found(done.clone(), &params);
+        assert!(again == found(before.clone(), &params), "{name}");
+        changed += usize::from(again != found(done.clone(), &Params::default()));
+    }
+    assert!(changed > 2, "these parameters decide something: {changed}");
+    let mut params = Params::default();
+    params.roof.least_nats = 2.0;
+    done.set_params(params);
+    assert!(done.has(Stage::Groups) && !done.has(Stage::Facets));
 }
 
 #[test]
@@ -459,7 +494,7 @@ fn both_methods_find_one_model() {
     let adopted = |l: &Line3d| l.origin == LineOrigin::Clustered;
     assert!(lines.is_sorted_by_key(adopted) && !adopted(&lines[0]));
     let rectangles = &results.rectangles.as_ref().unwrap().trace.candidates;
-    let groups = &results.facets.as_ref().unwrap().trace.facets.groups;
+    let groups = &results.groups.as_ref().unwrap().trace.groups;
     let of_both = groups.iter().filter(|g| rectangles_of(g).count() > 0);
     assert!(
         of_both.clone().count() > 0,

@@ -157,7 +157,7 @@ fn both_methods_share_their_planes() {
     let [first, helper] = &mut sessions;
     let stages = first.chosen_stages();
     for stage in &stages {
-        if stage == "facets" {
+        if stage == "groups" {
             let shard = |helper: &mut Session| helper.run_shard(stage, "planes", 0, 1, &silent);
             assert!(shard(helper).unwrap().is_empty(), "nothing is known yet");
             let earlier = [

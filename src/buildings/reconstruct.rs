@@ -1,21 +1,23 @@
-//! Method "lines": from 3D lines and half-planes to a roof model (B99 4.2, 4.3, figure 24).
+//! Method "lines": from competing planes to a roof model (B99 4.3, figure 24).
 
 use serde::Serialize;
 
 use super::model_lines::VerifiedLines;
 use super::parapets::{Parapet, below_parapets};
 use super::refine::{RefineTrace, RoofGap, cut_back_at_gaps, refine_roofs};
-use crate::execution::Sharded;
-use crate::facets::{FacetInput, FacetTrace, reconstruct_facets};
+use crate::execution::reached;
+use crate::facets::{CompetingPlanes, FacetTrace, reconstruct_facets};
+use crate::lines3d::Line3d;
 use crate::model::{Facet, RoofModel};
 use crate::params::RoofParams;
 use crate::scene::Scene;
 use crate::solids::{SolidTrace, close_buildings};
+use crate::terrain::Ground;
 
-/// The steps from half-planes to buildings.
+/// The steps from competing planes to buildings.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct RoofTrace {
-    /// Grouping, delineation and verification.
+    /// Delineation and verification.
     pub facets: FacetTrace,
     /// Gaps between facets that delineation had closed.
     pub gaps: Vec<RoofGap>,
@@ -41,20 +43,26 @@ pub struct UnrefinedFacets {
     pub sources: Vec<usize>,
 }
 
-/// Groups, delineates and verifies facets, refines the buildings and closes the solids.
+/// Delineates and verifies facets, refines the buildings and closes the solids.
 pub fn reconstruct_roofs(
     scene: &Scene,
-    evidence: &FacetInput,
+    competing: Option<&CompetingPlanes>,
+    lines: &[Line3d],
+    ground: &Ground,
     params: &RoofParams,
-) -> Sharded<(RoofModel, RoofTrace)> {
-    let FacetInput { lines, ground, .. } = *evidence;
-    let (facets, facet_trace) = reconstruct_facets(scene, evidence, params)?;
+) -> (RoofModel, RoofTrace) {
+    let (facets, facet_trace) = competing.map_or_else(Default::default, |competing| {
+        reconstruct_facets(scene, competing, ground, params)
+    });
+    reached(0.6);
     let below = |members: &[&Facet]| ground.below(members);
     // Refinement needs facets that share vertices, and moves them; so the solids are made again.
     let (delineated, solids) = close_buildings(&facets, below);
     let (separated, gaps) = cut_back_at_gaps(scene, &delineated, params);
     let (delineated, again) = close_buildings(&separated, below);
+    reached(0.65);
     let (refined, refinement) = refine_roofs(scene, lines, &delineated, params);
+    reached(0.85);
     let (lowered, parapets) = below_parapets(scene, &refined);
     let (model, closed) = close_buildings(&lowered, below);
     let unrefined = UnrefinedFacets {
@@ -71,5 +79,5 @@ pub fn reconstruct_roofs(
         solids,
         lines: VerifiedLines::default(),
     };
-    Ok((model, trace))
+    (model, trace)
 }

@@ -2,41 +2,55 @@
 
 use nalgebra::Point3;
 
-use super::borders::{Arrangement, LINE_HEIGHT, LineIndex};
+use super::borders::{Arrangement, BorderCosts, LINE_HEIGHT, LineIndex};
 use super::delineation::{Delineation, Outline};
 use super::evidence::PlaneEvidence;
 use super::outlines::OutlineEnergy;
+use super::point_cloud::CloudEvidence;
+use super::register::RegisterEvidence;
 use crate::geometry::Plane;
 use crate::ids::{BuildingId, ViewId};
+use crate::labelling::Energy;
 use crate::model::{Facet, Occluders};
 use crate::params::RoofParams;
-use crate::photoconsistency::ConsistencyMap;
+use crate::photoconsistency::{ConsistencyMap, PlanGrid};
 use crate::planes::PlaneGroup;
 use crate::scene::Scene;
 
 /// The planes that compete for the plan, and what facets on them are verified by.
-pub(super) struct CompetingPlanes {
-    pub evidence: PlaneEvidence,
-    pub arrangement: Arrangement,
-    pub planes: Vec<Plane>,
+#[derive(Clone, Debug)]
+pub struct CompetingPlanes {
+    /// What each plane stands on, in their order.
+    pub(super) groups: Vec<PlaneGroup>,
+    pub(super) evidence: PlaneEvidence,
+    pub(super) arrangement: Arrangement,
+    pub(super) planes: Vec<Plane>,
     /// The real lines, by which the outlines are rated.
-    pub index: LineIndex,
+    pub(super) index: LineIndex,
     /// How the views agree on each plane.
-    pub maps: Vec<ConsistencyMap>,
+    pub(super) maps: Vec<ConsistencyMap>,
     /// With pixels about as wide as the samples of the maps' cells are apart.
-    pub scene: Scene,
+    pub(super) scene: Scene,
+    /// Of the maps, the ground and the cells.
+    pub(super) grid: PlanGrid,
+    pub(super) cloud: Option<CloudEvidence>,
 }
 
 impl CompetingPlanes {
-    /// The facet over an outline; its `building` is still unset (0).
-    pub(super) fn facet(
+    /// What the labelling of the cells minimises.
+    pub(super) fn energy(
         &self,
-        outline: &Outline,
-        delineation: &Delineation,
-        groups: &[PlaneGroup],
-    ) -> Facet {
+        register: Option<&RegisterEvidence>,
+        params: &RoofParams,
+    ) -> Energy<BorderCosts> {
+        let (planes, lines) = (&self.planes, &self.index);
+        (self.evidence).energy(&self.arrangement, planes, lines, register, params)
+    }
+
+    /// The facet over an outline; its `building` is still unset (0).
+    pub(super) fn facet(&self, outline: &Outline, delineation: &Delineation) -> Facet {
         let plane = self.planes[outline.plane as usize];
-        let group = &groups[outline.plane as usize];
+        let group = &self.groups[outline.plane as usize];
         let lift = |ring: &Vec<usize>| -> Vec<Point3<f64>> {
             ring.iter()
                 .map(|&v| delineation.vertices[v])

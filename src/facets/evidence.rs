@@ -39,6 +39,7 @@ impl CellEvidence {
 }
 
 /// The evidence for every plane in every cell that it may cover.
+#[derive(Clone, Debug)]
 pub(super) struct PlaneEvidence {
     /// Per cell: (plane, evidence), ascending by plane.
     cells: Vec<Vec<(u32, CellEvidence)>>,
@@ -64,7 +65,7 @@ impl PlaneEvidence {
             Some(map) => ground_evidence(map, windows, &raster, arrangement.cells),
             None => vec![0.0; arrangement.cells],
         };
-        let per_group = crate::execution::map_part(hypotheses, 0.7..0.75, |_, h| {
+        let per_group = crate::execution::map_part(hypotheses, 0.9..1.0, |_, h| {
             let of_cloud = cloud.map(|cloud| cloud.of(&h.group.plane));
             let places = (raster.as_slice(), arrangement.cells);
             sum_over_cells(h, windows, places, grid, of_cloud.as_ref())

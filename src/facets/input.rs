@@ -1,5 +1,7 @@
 //! Input of the facet stage: the results of the stages before it.
 
+use std::sync::Arc;
+
 use nalgebra::Point3;
 
 use crate::lines2d::ImageSegment;
@@ -35,7 +37,7 @@ pub struct FacetInput<'a> {
     /// Planes that other sources propose.
     pub proposals: &'a [ProposedPlane],
     /// A point cloud that belongs here.
-    pub cloud: Option<&'a PlacedCloud>,
+    pub cloud: Option<&'a Arc<PlacedCloud>>,
     /// Are half-planes and pairs of lines grouped beside them? Not where sets of coplanar lines
     /// are all that there is.
     pub line_pairs: bool,

@@ -15,7 +15,8 @@
 //! verification      the tests that a facet must pass
 //! point_cloud       points of a cloud, in nats
 //! register          footprints of a register, in nats; each compared with the model
-//! reconstruct       the stage: orders B99 4.2 and 4.3
+//! compete           the stage of groups: orders B99 4.2
+//! reconstruct       the stage of facets: orders B99 4.3
 //! ```
 //!
 //! Invariant: facets are delineated as unions of cells of one subdivision of the plan, so that they
@@ -24,6 +25,7 @@
 //! Invariant: a plane that fails verification over some cells never covers them again.
 
 mod borders;
+mod compete;
 mod competing_planes;
 mod delineation;
 mod dominated;
@@ -38,6 +40,8 @@ mod verification;
 
 pub(crate) use borders::ON_LINE;
 pub use borders::{Border, BorderKind};
+pub use compete::{GroupingTrace, competing_planes};
+pub use competing_planes::CompetingPlanes;
 pub use input::{FacetInput, PlacedCloud};
 pub use reconstruct::{FacetTrace, reconstruct_facets};
 pub use register::{FootprintFinding, FootprintVerdict, RegisterTrace, RegisterVerdict};

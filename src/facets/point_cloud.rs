@@ -23,6 +23,8 @@
 //!
 //! so that what the cloud says of a facet lies between the logarithms of e and of 1 / e.
 
+use std::sync::Arc;
+
 use nalgebra::{Point2, Vector2};
 
 use super::input::PlacedCloud;
@@ -47,8 +49,9 @@ const GROUND_SIGMA_M: f64 = 0.3;
 const LEAST_SIGMA_M: f64 = 1e-3;
 
 /// A point cloud over the plan of a scene.
-pub(super) struct CloudEvidence<'a> {
-    cloud: &'a PlacedCloud,
+#[derive(Clone, Debug)]
+pub(super) struct CloudEvidence {
+    cloud: Arc<PlacedCloud>,
     grid: PlanGrid,
     /// The point nearest to each sample; `u32::MAX` for none.
     nearest: Vec<u32>,
@@ -58,15 +61,15 @@ pub(super) struct CloudEvidence<'a> {
 
 /// What a cloud says of one plane.
 pub(super) struct OfPlane<'a> {
-    cloud: &'a CloudEvidence<'a>,
+    cloud: &'a CloudEvidence,
     plane: Plane,
     /// Standard deviation of a point's height above it, metres.
     sigma_m: f64,
 }
 
-impl<'a> CloudEvidence<'a> {
+impl CloudEvidence {
     /// Lays the cloud over the plan.
-    pub(super) fn new(cloud: &'a PlacedCloud, ground: &Ground, window: &PlanGrid) -> Self {
+    pub(super) fn new(cloud: Arc<PlacedCloud>, ground: &Ground, window: &PlanGrid) -> Self {
         let size = Vector2::new(window.width as f64, window.height as f64) * window.step;
         let step = larger(SAMPLE_M, (size.x * size.y / MOST_SAMPLES).sqrt());
         let grid = PlanGrid::covering(window.origin, window.origin + size, step);
@@ -104,7 +107,7 @@ impl<'a> CloudEvidence<'a> {
     }
 
     /// What it says of a plane.
-    pub(super) fn of(&'a self, plane: &Plane) -> OfPlane<'a> {
+    pub(super) fn of(&self, plane: &Plane) -> OfPlane<'_> {
         let slope = plane.normal.xy().norm() / larger(plane.normal.z, 0.1);
         let place = slope * self.cloud.params.place_sigma_m;
         OfPlane {

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! B99:  segments -> matches -> adjustment -> lines -> coplanar -> adjacency -> halfplanes
-//!                      ^           |            -> dense -> facets -> corrections -> model
+//!                      ^           |   -> dense -> groups -> facets -> corrections -> model
 //!                      +-----------+ where views moved
 //! W96:  regions -> directions -> clusters -> rectangles -> corrections -> model
 //! both: segments to adjustment, those of W96, then the others of B99, which take in its lines and

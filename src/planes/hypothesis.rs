@@ -42,7 +42,7 @@ pub(crate) fn plane_hypotheses(
     params: &RoofParams,
 ) -> Sharded<Vec<PlaneHypothesis>> {
     let rays = rays_through_ends(scene, segments);
-    let built = sharded_map("planes", &groups, 0.2..0.6, |_, group| {
+    let built = sharded_map("planes", &groups, 0.2..0.65, |_, group| {
         if group.is_propagated(input) && !confirmed_beside_lines(input, group, reduced, step) {
             return None;
         }

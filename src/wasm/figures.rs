@@ -262,10 +262,18 @@ impl Session {
             .transpose()
     }
 
-    /// Method "lines": groups, lines found in planes, border lines and withdrawn facets (B99
-    /// figures 17 to 23); `null` before that stage.
-    #[wasm_bindgen(unchecked_return_type = "FacetTrace | null")]
+    /// Method "lines": groups, lines found in planes, and border lines (B99 figures 17 to 22);
+    /// `null` before that stage.
+    #[wasm_bindgen(unchecked_return_type = "GroupingTrace | null")]
     pub fn grouping(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().groups.as_ref();
+        to_js(&found.map(|r| &r.trace))
+    }
+
+    /// Method "lines": the facets that were weighed, and the rejected ones (B99 figure 23); `null`
+    /// before that stage.
+    #[wasm_bindgen(unchecked_return_type = "FacetTrace | null")]
+    pub fn verification(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().facets.as_ref();
         to_js(&found.map(|r| &r.trace.facets))
     }

@@ -6,6 +6,7 @@ use crate::geometry::Segment3;
 use crate::plan_index::PlanIndex;
 
 /// 3D lines by plan position.
+#[derive(Clone, Debug)]
 pub(crate) struct LineIndex {
     lines: Vec<Segment3>,
     index: PlanIndex,

@@ -114,7 +114,7 @@ pub(crate) struct KnownEvidence<'a> {
     /// A register that counts.
     pub register: Option<&'a RegisterEvidence<'a>>,
     /// A point cloud that counts.
-    pub cloud: Option<&'a CloudEvidence<'a>>,
+    pub cloud: Option<&'a CloudEvidence>,
 }
 
 /// Verifies a facet between the other facets and over the ground. A register and a cloud add terms

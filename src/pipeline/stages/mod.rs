@@ -16,6 +16,7 @@ mod coplanar;
 mod corrections;
 mod dense;
 mod facets;
+mod groups;
 mod half_planes;
 mod lines;
 mod matches;
@@ -125,7 +126,9 @@ stage_table! {
     HalfPlanes in half_planes: LINES,
     /// Planes from dense matching (B99 2).
     Dense in dense: DENSE,
-    /// Roof facets and the closed buildings below them (B99 4.2, 4.3).
+    /// Groups of lines and half-planes, and the planes that compete for the plan (B99 4.2).
+    Groups in groups: LINES,
+    /// Roof facets and the closed buildings below them (B99 4.3).
     Facets in facets: LINES,
     /// What somebody corrects of the model by hand.
     Corrections in corrections: ALL,

@@ -53,7 +53,7 @@ export const KINDS = {
   "correlation-windows": { ...lab("matches", "lines", "matches", PointLab, longSegment), rows: windowRows },
   "line-accuracy": lab("lines", "lines", "lines", LineLab, bestLine),
   "theta-sweep": lab("halfplanes", "lines", "halfplanes", SimLab, sharpestHalfPlane),
-  groups: lab("groups", "lines", "facets", GroupLab, largestGroup),
+  groups: lab("groups", "lines", "groups", GroupLab, largestGroup),
   "facet-plan": lab("facets", "lines", "facets", FacetLab, firstFacet),
   refinement: lab("refinement", "lines", "facets", RefinementLab, busiestBuilding),
   "dense-planes": lab("dense", "lines", "dense", DenseLab, largestBuilding),

@@ -14,6 +14,7 @@ import type {
   Directions,
   Facet,
   FacetTrace,
+  GroupingTrace,
   HalfPlane,
   LineRecord,
   MatchRecord,
@@ -51,7 +52,8 @@ export interface Results {
   records: LineRecord[];
   stretches: Float64Array | null;
   sides: SideRecord[];
-  grouping: FacetTrace | null;
+  grouping: GroupingTrace | null;
+  verification: FacetTrace | null;
   refinement: Refinement | null;
   regions: Segmentation[];
   directions: Directions | null;
@@ -81,6 +83,7 @@ export const NO_RESULTS: Results = {
   stretches: null,
   sides: [],
   grouping: null,
+  verification: null,
   refinement: null,
   regions: [],
   directions: null,

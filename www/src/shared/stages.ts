@@ -90,11 +90,18 @@ export const STAGES = [
     reads: ["dense", "point_cloud"],
   },
   {
+    name: "groups",
+    title: "Groups",
+    section: "B99 4.2",
+    methods: ["lines", "combined", "coplanar", "adjacency"],
+    reads: ["roof.coplanar_angle_deg", "roof.coplanar_distance_m", "roof.min_facet_depth_m", "roof.max_facet_depth_m", "roof.extension_m", "roof.min_height_m", "point_cloud"],
+  },
+  {
     name: "facets",
     title: "Facets",
-    section: "B99 4.2, 4.3",
+    section: "B99 4.3",
     methods: ["lines", "combined", "coplanar", "adjacency"],
-    reads: ["roof", "point_cloud"],
+    reads: ["roof"],
   },
   {
     name: "corrections",

@@ -5,7 +5,7 @@
 import { Mesh, MeshBasicMaterial, type Object3D, Sphere, SphereGeometry, Texture, Vector3 } from "three";
 import type { GroundTexture } from "../shared/calls";
 import { PALETTE } from "../shared/palette";
-import type { Facet, FacetTrace, HalfPlane, LineRecord, SideRecord } from "../shared/records";
+import type { Facet, GroupingTrace, HalfPlane, LineRecord, SideRecord } from "../shared/records";
 import { buildFacets } from "./layers/facets";
 import { buildFans } from "./layers/fans";
 import { buildGround } from "./layers/ground";
@@ -75,13 +75,11 @@ const FACET: Facet = {
   half_planes: [],
   proposals: [],
 };
-const GROUPING: FacetTrace = {
+const GROUPING: GroupingTrace = {
   groups: [{ plane: PLANE, members: [{ line: 0, side: null, half_plane: null }], proposals: [] }],
   plane_lines: [{ segment: { p0: [0, 0, 0], p1: [1, 0, 0] }, views: [] }],
   borders: [],
   cells: 0,
-  judged: [],
-  rejected: [],
 };
 
 export function warmupLayers(): Layer[] {

@@ -18,6 +18,7 @@ import type {
   FacetTrace,
   FlightPlan,
   GroundPicture,
+  GroupingTrace,
   HalfPlane,
   LackingFile,
   LineRecord,
@@ -478,7 +479,7 @@ export class Session implements CoreSession {
     };
   }
 
-  grouping(): FacetTrace {
+  grouping(): GroupingTrace {
     const members = (lines: number[]) => lines.map((line) => ({ line, side: null, half_plane: null }));
     return {
       groups: [
@@ -491,9 +492,11 @@ export class Session implements CoreSession {
         return { kind: "real" as const, a: [p[0], p[1]] as const, b: [q[0], q[1]] as const };
       }),
       cells: 2,
-      judged: [],
-      rejected: [],
     };
+  }
+
+  verification(): FacetTrace {
+    return { judged: [], rejected: [] };
   }
 
   regions(): null {

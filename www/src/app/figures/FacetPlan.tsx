@@ -1,7 +1,7 @@
 /** B99 figures 21 to 23: the facets in plan, each in the colour of its plane, and the border lines that enclose them. */
 import "./figures.css";
 import type { Figure } from "../../shared/figure";
-import type { Facet, FacetTrace, Vec2 } from "../../shared/records";
+import type { Facet, FacetTrace, GroupingTrace, Vec2 } from "../../shared/records";
 import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
 import { roofTintHex } from "../../viewer/scene/roofTint";
 import { Filmstrip } from "../images/Filmstrip";
@@ -12,14 +12,14 @@ import { facetRejectionWords } from "../parts/reasonText";
 
 /** Figures 21 to 23: border lines by their kind, what they enclose, and what was rejected. */
 export function FacetLab({ figure }: { figure: Figure }) {
-  const { grouping, facets } = figure.results;
-  if (grouping === null || facets === null) {
+  const { grouping, verification, facets } = figure.results;
+  if (grouping === null || verification === null || facets === null) {
     return <p class="lab-hint muted">Run the stage: the border lines in plan appear here.</p>;
   }
   return (
     <div class="split-lab even">
       <figure class="plan">
-        <Fit>{(frame) => <Plan frame={frame} figure={figure} grouping={grouping} facets={facets} />}</Fit>
+        <Fit>{(frame) => <Plan {...{ frame, figure, grouping, verification, facets }} />}</Fit>
         <figcaption class="muted numbers">
           <ul class="legend">
             {BORDER_KINDS.map((kind) => [kind, countOf(kind, grouping)] as const)
@@ -32,12 +32,12 @@ export function FacetLab({ figure }: { figure: Figure }) {
               ))}
             <li>
               <span class="swatch rejected" aria-hidden="true" />
-              rejected {grouping.rejected.length}
+              rejected {verification.rejected.length}
             </li>
-            {grouping.register !== undefined && (
+            {verification.register !== undefined && (
               <li title="their bounding boxes">
                 <span class="swatch footprint" aria-hidden="true" />
-                footprints {grouping.register.footprints.length}
+                footprints {verification.register.footprints.length}
               </li>
             )}
           </ul>
@@ -57,7 +57,7 @@ const BORDER_WORDS = {
   rectangle: "sides of rectangles",
 };
 
-function countOf(kind: (typeof BORDER_KINDS)[number], { borders }: FacetTrace): number {
+function countOf(kind: (typeof BORDER_KINDS)[number], { borders }: GroupingTrace): number {
   return borders.filter((border) => border.kind === kind).length;
 }
 
@@ -67,14 +67,15 @@ const FOCUSABLE = { tabindex: 0 };
 interface PlanProps {
   frame: Frame;
   figure: Figure;
-  grouping: FacetTrace;
+  grouping: GroupingTrace;
+  verification: FacetTrace;
   facets: readonly Facet[];
 }
 
-function Plan({ frame, figure, grouping, facets }: PlanProps) {
+function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
   const outlines = facets.map(({ outer }) => outer);
   // The roofs, and the footprints that are known, fill the figure; border lines on the ground reach far beyond them.
-  const footprints = grouping.register?.footprints ?? [];
+  const footprints = verification.register?.footprints ?? [];
   const points: readonly (readonly number[])[] = [
     ...(outlines.length > 0 ? outlines.flat() : grouping.borders.flatMap(({ a, b }): Vec2[] => [a, b])),
     ...footprints.flatMap(({ bounds_m }) => bounds_m),
@@ -93,7 +94,7 @@ function Plan({ frame, figure, grouping, facets }: PlanProps) {
       class="chart plan-chart"
       viewBox={`0 0 ${frame.width} ${frame.height}`}
       role="group"
-      aria-label={`Plan: ${counted(grouping.borders.length, "border lines")}, ${counted(grouping.cells, "cells")}, ${counted(outlines.length, "facets")}; ${grouping.rejected.length} rejected`}
+      aria-label={`Plan: ${counted(grouping.borders.length, "border lines")}, ${counted(grouping.cells, "cells")}, ${counted(outlines.length, "facets")}; ${verification.rejected.length} rejected`}
       data-testid="plan"
     >
       {facets.map((facet, i) => (
@@ -107,7 +108,7 @@ function Plan({ frame, figure, grouping, facets }: PlanProps) {
           d={closedPathOf(facet.outer.map(at))}
         />
       ))}
-      {grouping.rejected.map(({ outline, reason }, i) => (
+      {verification.rejected.map(({ outline, reason }, i) => (
         <PlanArea
           key={i}
           figure={figure}

@@ -5,7 +5,7 @@ import { results } from "../state/results";
 import type { Row } from "./rowLinks";
 
 export function footprintRows(index: number): Row[] {
-  const register = results.value.grouping?.register;
+  const register = results.value.verification?.register;
   const found = register?.footprints[index];
   if (register === undefined || found === undefined) {
     return [];

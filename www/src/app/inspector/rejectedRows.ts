@@ -29,7 +29,7 @@ export function rejectedSegmentRows(view: number, index: number): Row[] {
 }
 
 export function rejectedFacetRows(index: number): Row[] {
-  const facet = results.value.grouping?.rejected[index];
+  const facet = results.value.verification?.rejected[index];
   if (facet === undefined) {
     return [];
   }

@@ -75,7 +75,7 @@ export function titleOf(picked: Selection): string {
     case "rejectedFacet":
       return `Rejected facet ${picked.index}`;
     case "footprint":
-      return `Footprint ${results.value.grouping?.register?.footprints[picked.index]?.name ?? picked.index}`;
+      return `Footprint ${results.value.verification?.register?.footprints[picked.index]?.name ?? picked.index}`;
     case "cluster":
       return `Rejected cluster ${picked.index} of plane ${picked.plane}`;
     case "refinement":

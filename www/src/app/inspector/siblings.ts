@@ -9,7 +9,7 @@ import { shownView, tab } from "../state/viewState";
 
 /** The neighbours of the selected thing, or, where nothing is selected, what the present tab is about. */
 export function siblingsOf(picked: Selection | null): readonly Selection[] {
-  const { rejected, grouping, clusters, refinement } = results.value;
+  const { rejected, verification, clusters, refinement } = results.value;
   switch (picked?.kind) {
     case undefined:
       return itemsOfTab(tab.value);
@@ -37,9 +37,9 @@ export function siblingsOf(picked: Selection | null): readonly Selection[] {
     case "surface":
       return itemsOfTab("facets");
     case "rejectedFacet":
-      return numbered(grouping?.rejected.length, (index) => ({ kind: "rejectedFacet", index }));
+      return numbered(verification?.rejected.length, (index) => ({ kind: "rejectedFacet", index }));
     case "footprint":
-      return numbered(grouping?.register?.footprints.length, (index) => ({ kind: "footprint", index }));
+      return numbered(verification?.register?.footprints.length, (index) => ({ kind: "footprint", index }));
     case "refinement":
       return itemsOfTab("refinement");
     case "relation":

@@ -7,8 +7,8 @@ import { results } from "../state/results";
 import { tab } from "../state/viewState";
 
 export function KnownFindings() {
-  const { terrain, dense, grouping } = results.value;
-  const register = tab.value === "facets" ? grouping?.register : undefined;
+  const { terrain, dense, verification } = results.value;
+  const register = tab.value === "facets" ? verification?.register : undefined;
   const ground = tab.value === "facets" || tab.value === "halfplanes" ? terrain : null;
   const cloud = tab.value === "facets" || tab.value === "dense" ? dense?.trace.point_cloud : undefined;
   return (

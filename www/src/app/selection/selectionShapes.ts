@@ -39,7 +39,7 @@ export function shapesOf(picked: Selection | null, results: Results): Shape[] {
     case "surface":
       return picked.facet === null ? [] : areas(facetRings(picked.facet, results));
     case "rejectedFacet":
-      return areas([results.grouping?.rejected[picked.index]?.outline ?? []]);
+      return areas([results.verification?.rejected[picked.index]?.outline ?? []]);
     case "cluster":
       return openLine(clusterEnds(picked.plane, picked.index, results));
     case "refinement":

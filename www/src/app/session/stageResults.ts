@@ -49,11 +49,12 @@ const FETCHED: Record<StageName, (from: ResultSource) => Promise<Partial<Results
   coplanar: async (from) => ({ coplanar: await from.call("coplanar") }),
   adjacency: async (from) => ({ adjacency: await from.call("adjacency") }),
   dense: async (from) => ({ dense: await from.call("dense") }),
+  groups: async (from) => ({ grouping: await from.call("grouping") }),
   facets: async (from) => ({
     facets: await from.call("facets"),
     corrected: null,
     madeWith: from.params,
-    grouping: await from.call("grouping"),
+    verification: await from.call("verification"),
     refinement: await from.call("refinement"),
     // The model adds new lines to the matched ones.
     ...(await fetchLines(from)),

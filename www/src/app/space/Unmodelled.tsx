@@ -7,8 +7,8 @@ import { select, selection, showTab } from "../state/viewState";
 import { unmodelledPlanes } from "./unmodelledPlanes";
 
 const missing = computed(() => {
-  const { grouping, facets } = results.value;
-  return grouping === null || facets === null ? [] : unmodelledPlanes(grouping.rejected, facets);
+  const { verification, facets } = results.value;
+  return verification === null || facets === null ? [] : unmodelledPlanes(verification.rejected, facets);
 });
 
 export function Unmodelled() {

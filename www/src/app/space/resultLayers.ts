@@ -2,7 +2,7 @@
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Vector3 } from "three";
 import { LINE_STRIDE } from "../../shared/flatArrays";
-import type { Facet, FacetTrace, Vec3 } from "../../shared/records";
+import type { Facet, GroupingTrace, Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { buildAdjacency } from "../../viewer/layers/adjacency";
 import { buildCameras } from "../../viewer/layers/cameras";
@@ -114,7 +114,7 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   },
   groups: () => {
     const { lines, grouping, facets } = results.value;
-    const build = () => buildGroups(grouping as FacetTrace, lines as Float64Array, facets ?? []);
+    const build = () => buildGroups(grouping as GroupingTrace, lines as Float64Array, facets ?? []);
     return lines && grouping && [build, grouping, lines, facets];
   },
   stretches: () => {

@@ -9,12 +9,12 @@ export type { Method };
 const SHOWN_BY = { adjustment: "matches", corrections: "model" } as const;
 type ShownElsewhere = keyof typeof SHOWN_BY;
 
-/** Views of the stages, and beside them the photographs and what the facets were made of. */
-export type Tab = Exclude<StageName, ShownElsewhere> | "images" | "groups" | "refinement";
+/** Views of the stages, and beside them the photographs and what refinement did. */
+export type Tab = Exclude<StageName, ShownElsewhere> | "images" | "refinement";
 
 /** The views of a stage, in their order; one of its own name where it has no others. */
 const TABS_OF_STAGE: Partial<Record<StageName, readonly Tab[]>> = {
-  facets: ["groups", "facets", "refinement"],
+  facets: ["facets", "refinement"],
 };
 
 /** The stage views of each method. */

@@ -4,7 +4,7 @@
  */
 import { Color } from "three";
 import { category, PALETTE } from "../../shared/palette";
-import { type Facet, type FacetTrace, isMadeFrom, type Segment3 } from "../../shared/records";
+import { type Facet, type GroupingTrace, isMadeFrom, type Segment3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { isOfRoof, middleOf } from "../scene/facetPlan";
 import { zUpGroup } from "../scene/frame";
@@ -23,7 +23,11 @@ const DIMMED = 0.3;
  * @param lines p0 and p1 of each 3D line, local frame, metres
  * @param facets what the groups became
  */
-export function buildGroups(grouping: FacetTrace, lines: Float64Array, facets: readonly Facet[] = []): Layer {
+export function buildGroups(
+  grouping: GroupingTrace,
+  lines: Float64Array,
+  facets: readonly Facet[] = [],
+): Layer {
   const object = zUpGroup();
   const became = facets.map((facet) => groupOf(facet, grouping));
   const owner = owners(grouping, new Set(became));
@@ -82,7 +86,7 @@ export function buildGroups(grouping: FacetTrace, lines: Float64Array, facets: r
 }
 
 /** The group that each line is drawn for: of several, one that became a facet, and of these the largest. */
-function owners(grouping: FacetTrace, became: ReadonlySet<number>): Map<number, number> {
+function owners(grouping: GroupingTrace, became: ReadonlySet<number>): Map<number, number> {
   const order = grouping.groups
     .map((group, index) => ({ group, index }))
     .sort(
@@ -102,7 +106,7 @@ function owners(grouping: FacetTrace, became: ReadonlySet<number>): Map<number, 
 }
 
 /** The group that a facet was made from; -1 where none says so. */
-function groupOf(facet: Facet, { groups }: FacetTrace): number {
+function groupOf(facet: Facet, { groups }: GroupingTrace): number {
   return groups.findIndex((group) => isMadeFrom(facet, group));
 }
 

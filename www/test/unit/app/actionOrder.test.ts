@@ -346,7 +346,7 @@ describe("a run", () => {
     expect(ran).toEqual(["halfplanes", "halfplanes"]);
     void page.dropParam(path);
     await untilIdle();
-    expect(ran.slice(2)).toEqual(["dense", "facets", "corrections", "model"]);
+    expect(ran.slice(2)).toEqual(["dense", "groups", "facets", "corrections", "model"]);
     expect(new Set(page.stages.value.map(({ status }) => status))).toEqual(new Set(["done"]));
   });
 
@@ -365,6 +365,7 @@ describe("a run", () => {
       "adjacency",
       "halfplanes",
       "dense",
+      "groups",
       "facets",
       "corrections",
       "model",

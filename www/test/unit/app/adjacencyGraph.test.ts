@@ -16,7 +16,7 @@ import {
   type CornerPlane,
   cornerPlanesOf,
   type Facet,
-  type FacetTrace,
+  type GroupingTrace,
   type ImageGraph,
   isMadeFrom,
   type SpaceCorner,
@@ -136,7 +136,7 @@ const FACET = {
 } as unknown as Facet;
 
 function show(): void {
-  const grouping = { groups: [], rejected: [] } as unknown as FacetTrace;
+  const grouping = { groups: [] } as unknown as GroupingTrace;
   restoreResults({
     main: { ...NO_RESULTS, adjacency: ADJACENCY, grouping, facets: [FACET] },
     regions: NO_RESULTS,

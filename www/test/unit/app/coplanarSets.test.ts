@@ -14,7 +14,7 @@ import {
   type CoplanarSets,
   coplanarSetsOf,
   type Facet,
-  type FacetTrace,
+  type GroupingTrace,
   isMadeFrom,
   isRejected,
 } from "../../../src/shared/records";
@@ -85,7 +85,7 @@ const FACET = {
 } as unknown as Facet;
 
 function show(): void {
-  const grouping = { groups: [], rejected: [] } as unknown as FacetTrace;
+  const grouping = { groups: [] } as unknown as GroupingTrace;
   const main = { ...NO_RESULTS, coplanar: COPLANAR, grouping, facets: [FACET] };
   restoreResults({ main, regions: NO_RESULTS });
 }

@@ -15,7 +15,7 @@ import {
   type DensePlanes,
   densePlanesOf,
   type Facet,
-  type FacetTrace,
+  type GroupingTrace,
   isMadeFrom,
   rectanglesOf,
 } from "../../../src/shared/records";
@@ -78,8 +78,7 @@ const GROUPING = {
       proposals: [],
     },
   ],
-  rejected: [],
-} as unknown as FacetTrace;
+} as unknown as GroupingTrace;
 
 function show(): void {
   restoreResults({

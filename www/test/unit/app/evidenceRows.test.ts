@@ -105,8 +105,8 @@ it("a facet has its probability, unless nothing weighed it", () => {
 
 it("a rejected facet says in short why, and in bars all that was weighed", () => {
   const reason = { improbable: { evidence: AGAINST } };
-  const grouping = { groups: [], rejected: [{ group: 0, outline: [], reason }] } as unknown as FacetTrace;
-  show({ grouping });
+  const verification = { rejected: [{ group: 0, outline: [], reason }] } as unknown as FacetTrace;
+  show({ verification });
   const words = facetRejectionWords(reason);
   expect(words).toBe("more likely no roof (probability 12 %); most against it: excess green (−1.7 nats)");
   const rows = rowsOf({ kind: "rejectedFacet", index: 0 });

@@ -2,7 +2,7 @@
 import type { Intersection } from "three";
 import type { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { expect, it } from "vitest";
-import type { Facet, FacetTrace } from "../../../src/shared/records";
+import type { Facet, GroupingTrace } from "../../../src/shared/records";
 import { buildGroups } from "../../../src/viewer/layers/groups";
 import { isOfRoof, middleOf } from "../../../src/viewer/scene/facetPlan";
 
@@ -38,7 +38,7 @@ const GROUPING = {
   borders: [],
   cells: 0,
   rejected: [],
-} as unknown as FacetTrace;
+} as unknown as GroupingTrace;
 
 it("dims lines of groups without a facet, and picks the group of a line or of an area", () => {
   const lines = Float64Array.from([0, 1, 2].flatMap((i) => [0, i, 0, 1, i, 0]));
