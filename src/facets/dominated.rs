@@ -48,7 +48,7 @@ fn not_dominated(supports: &[Support]) -> Vec<bool> {
     let mut kept: Vec<&Support> = Vec::new();
     for i in strongest {
         let support = &supports[i];
-        let pays = |other: &&Support| support.beyond(other) > PLANE_NATS;
+        let pays = |other: &&Support| support.pays_beside(other);
         if support.total > PLANE_NATS && kept.iter().all(pays) {
             stays[i] = true;
             kept.push(support);
@@ -107,15 +107,20 @@ impl Support {
         support
     }
 
-    /// What is lost when another plane stands for this one, nats.
-    fn beyond(&self, other: &Self) -> f64 {
+    /// Is more than the price of a plane lost when another one stands for this one?
+    fn pays_beside(&self, other: &Self) -> bool {
         let mut others = other.positions.iter().peekable();
         let lost = self.positions.iter().map(|&(position, nats)| {
             while others.next_if(|o| o.0 < position).is_some() {}
             let same = others.peek().filter(|o| o.0 == position);
             larger(nats - same.map_or(0.0, |o| o.1), 0.0)
         });
-        lost.sum()
+        // Nothing is negative: the sum only grows.
+        let mut sums = lost.scan(0.0, |sum, lost| {
+            *sum += lost;
+            Some(*sum)
+        });
+        sums.any(|sum| sum > PLANE_NATS)
     }
 }
 

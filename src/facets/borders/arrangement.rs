@@ -194,18 +194,20 @@ fn span(t: &[Point2<f64>; 3], y: f64) -> Option<(f64, f64)> {
 fn split_at_crossings(borders: &[Border]) -> (Vec<Point2<f64>>, Vec<(usize, usize)>) {
     let mut places: Vec<Point2<f64>> = borders.iter().flat_map(|b| [b.a, b.b]).collect();
     let index = PlanIndex::new(borders.iter().map(|b| [b.a, b.b]));
-    for (i, p) in borders.iter().enumerate() {
+    let crossings = crate::execution::map(borders, |i, p| -> Vec<Point2<f64>> {
         let near = index.touching([p.a, p.b], SNAP).map(|j| j as usize);
         let mut later: Vec<usize> = near.filter(|j| *j > i).collect();
         later.sort();
-        places.extend(later.into_iter().filter_map(|j| crossing(p, &borders[j])));
-    }
+        let crossings = later.into_iter().filter_map(|j| crossing(p, &borders[j]));
+        crossings.collect()
+    });
+    places.extend(crossings.into_iter().flatten());
     let vertices = SnappedVertices::new(&places);
-    let mut pieces = Vec::new();
-    for border in borders {
-        let on = vertices.along(border);
-        pieces.extend(on.windows(2).map(|w| (w[0].min(w[1]), w[0].max(w[1]))));
-    }
+    let on_borders = crate::execution::map(borders, |_, border| vertices.along(border));
+    let pieces = on_borders.iter().flat_map(|on| on.windows(2));
+    let mut pieces: Vec<(usize, usize)> = pieces
+        .map(|piece| (piece[0].min(piece[1]), piece[0].max(piece[1])))
+        .collect();
     pieces.sort();
     pieces.dedup();
     (vertices.points, pieces)

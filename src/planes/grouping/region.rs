@@ -13,6 +13,8 @@ use crate::params::RoofParams;
 
 /// How far a region reaches behind its line, metres: more than the line's own uncertainty.
 pub(crate) const MARGIN: f64 = 0.5;
+/// No coordinate in metres is rounded by more.
+const ROUNDING: f64 = 1e-6;
 /// Sine of the angle to the horizontal direction of a plane, in plan, below which a side is level
 /// (5 degrees).
 const LEVEL: f64 = 0.09;
@@ -26,6 +28,8 @@ const NEARLY_LEVEL: f64 = 0.087;
 pub(crate) struct PlanRegion {
     boxes: Vec<PlanBox>,
     hull: Vec<Point2<f64>>,
+    /// Least and largest x and y of both, and a little more.
+    around: [Point2<f64>; 2],
 }
 
 /// A rectangle beside a line: origin at the line's start, `along` its direction, `across` to the
@@ -41,6 +45,18 @@ struct PlanBox {
 }
 
 impl PlanBox {
+    fn corners(&self) -> [Point2<f64>; 4] {
+        let across = Vector2::new(-self.along.y, self.along.x);
+        let far = self.length + self.ends;
+        [
+            (-self.ends, self.left),
+            (-self.ends, -self.right),
+            (far, self.left),
+            (far, -self.right),
+        ]
+        .map(|(t, u)| self.start + self.along * t + across * u)
+    }
+
     /// The part of a row of the plan in it.
     fn span_at(&self, y: f64) -> [f64; 2] {
         let (ax, ay) = (self.along.x, self.along.y);
@@ -149,14 +165,29 @@ impl PlanRegion {
             .chain(group.proposed(input).filter_map(PlanBox::around))
             .collect();
         let lines = (group.members.iter()).map(|m| &input.lines[m.line.index()].segment);
-        Self {
+        Self::of(
             boxes,
-            hull: convex_hull(lines.flat_map(|l| [l.p0.xy(), l.p1.xy()])),
+            convex_hull(lines.flat_map(|l| [l.p0.xy(), l.p1.xy()])),
+        )
+    }
+
+    fn of(boxes: Vec<PlanBox>, hull: Vec<Point2<f64>>) -> Self {
+        let corners = boxes.iter().flat_map(PlanBox::corners);
+        let [low, high] = bounds(corners.chain(hull.iter().copied()));
+        let rounding = Vector2::repeat(ROUNDING);
+        Self {
+            around: [low - rounding, high + rounding],
+            boxes,
+            hull,
         }
     }
 
     /// Does the region hold a plan position?
     pub(crate) fn contains(&self, p: &Point2<f64>) -> bool {
+        let [low, high] = &self.around;
+        if p.x < low.x || p.y < low.y || p.x > high.x || p.y > high.y {
+            return false;
+        }
         self.boxes.iter().any(|b| {
             let d = p - b.start;
             let (t, u) = (d.dot(&b.along), b.along.x * d.y - b.along.y * d.x);
@@ -188,18 +219,7 @@ impl PlanRegion {
 
     /// Least and largest x and y, metres.
     pub(crate) fn bounds(&self) -> [Point2<f64>; 2] {
-        bounds(self.boxes.iter().flat_map(|b| {
-            let across = Vector2::new(-b.along.y, b.along.x);
-            let corner = move |t: f64, u: f64| b.start + b.along * t + across * u;
-            let far = b.length + b.ends;
-            [
-                (-b.ends, b.left),
-                (-b.ends, -b.right),
-                (far, b.left),
-                (far, -b.right),
-            ]
-            .map(|(t, u)| corner(t, u))
-        }))
+        bounds(self.boxes.iter().flat_map(PlanBox::corners))
     }
 }
 
@@ -326,10 +346,7 @@ mod tests {
     #[test]
     fn a_row_holds_what_the_region_holds() {
         let region = between_rakes();
-        let boxes_alone = PlanRegion {
-            hull: Vec::new(),
-            ..region.clone()
-        };
+        let boxes_alone = PlanRegion::of(region.boxes.clone(), Vec::new());
         for region in [region, boxes_alone] {
             let mut held = 0;
             for y in (-20..80).map(|i| 0.1 * f64::from(i) + 0.013) {
