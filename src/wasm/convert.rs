@@ -8,6 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::{JsError, JsValue};
 
+use super::memory::grow_ahead;
 use crate::camera::Camera;
 use crate::error::Error;
 use crate::execution::{Listener, MergedShards};
@@ -79,6 +80,7 @@ impl ViewInfo {
 pub(crate) fn listener_of(on_progress: &Function) -> Listener {
     let on_progress = on_progress.clone();
     Arc::new(move |fraction| {
+        grow_ahead();
         // A listener that throws is the page's own fault, and no reason to lose the stage.
         let _ = on_progress.call1(&JsValue::NULL, &fraction.into());
     })

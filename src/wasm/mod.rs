@@ -19,6 +19,7 @@ mod corrections;
 mod figures;
 #[cfg(feature = "reconstruction")]
 mod files;
+mod memory;
 #[cfg(not(feature = "reconstruction"))]
 mod orienter;
 #[cfg(feature = "reconstruction")]
