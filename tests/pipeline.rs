@@ -70,7 +70,7 @@ fn the_planted_house_is_found() {
         "{covered:.1} m of {total:.1} m of the edges"
     );
 
-    let model = &results.facets.as_ref().unwrap().value;
+    let model = &results.refinement.as_ref().unwrap().value;
     assert_eq!(check_invariants(model), vec![]);
     assert_eq!(model.buildings.len(), 1);
     assert!((model.buildings[0].ground_z - truth.ground_z).abs() < 0.5);
@@ -420,31 +420,42 @@ fn new_parameters_of_roofs_give_what_a_new_run_gives() {
     let mut before = Run::new(scene, Params::default());
     before.step(Stage::Dense, &silent());
     let mut done = before.clone();
-    done.step(Stage::Facets, &silent());
+    done.step(Stage::Refinement, &silent());
     let found = |mut run: Run, params: &Params| {
         run.set_params(params.clone());
-        run.step(Stage::Facets, &silent());
-        let (groups, facets) = (&run.results().groups, &run.results().facets);
-        let (groups, facets) = (groups.as_ref().unwrap(), facets.as_ref().unwrap());
-        let traces = serde_json::to_string(&(&groups.trace, &facets.trace)).unwrap();
-        format!("{:?} {traces}", facets.value)
+        run.step(Stage::Refinement, &silent());
+        let results = run.results();
+        let groups = &results.groups.as_ref().unwrap().trace;
+        let facets = &results.facets.as_ref().unwrap().trace;
+        let refined = results.refinement.as_ref().unwrap();
+        let traces = serde_json::to_string(&(groups, facets, &refined.trace)).unwrap();
+        format!("{:?} {traces}", refined.value)
     };
-    let numbers = serde_json::to_value(Params::default()).unwrap();
+    let defaults = serde_json::to_value(Params::default()).unwrap();
     let mut changed = 0;
-    let numbers = numbers["roof"].as_object().unwrap().iter();
-    for (name, value) in numbers.filter_map(|(name, v)| Some((name, v.as_f64()?))) {
-        let mut params = serde_json::to_value(Params::default()).unwrap();
-        params["roof"][name] = (1.7 * value + 0.8).into();
-        let params: Params = serde_json::from_value(params).unwrap();
-        let again = found(done.clone(), &params);
-        assert!(again == found(before.clone(), &params), "{name}");
-        changed += usize::from(again != found(done.clone(), &Params::default()));
+    for group in ["/roof", "/roof/refine"] {
+        let numbers = defaults.pointer(group).unwrap().as_object().unwrap();
+        for (name, value) in numbers.iter().filter(|(_, value)| value.is_number()) {
+            let mut params = defaults.clone();
+            params.pointer_mut(group).unwrap()[name] = match value.as_u64() {
+                Some(count) => (2 * count + 1).into(),
+                None => (1.7 * value.as_f64().unwrap() + 0.8).into(),
+            };
+            let params: Params = serde_json::from_value(params).unwrap();
+            let again = found(done.clone(), &params);
+            assert!(again == found(before.clone(), &params), "{group}/{name}");
+            changed += usize::from(again != found(done.clone(), &Params::default()));
+        }
     }
-    assert!(changed > 2, "these parameters decide something: {changed}");
+    assert!(changed > 8, "these parameters decide something: {changed}");
     let mut params = Params::default();
     params.roof.least_nats = 2.0;
-    done.set_params(params);
+    done.set_params(params.clone());
     assert!(done.has(Stage::Groups) && !done.has(Stage::Facets));
+    done.step(Stage::Refinement, &silent());
+    params.roof.refine.reach_px += 1.0;
+    done.set_params(params);
+    assert!(done.has(Stage::Facets) && !done.has(Stage::Refinement));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! From facets to buildings (B99 4.2, 4.3, figure 24; section 2 for refinement).
 //!
 //! ```text
-//! reconstruct  method "lines": facets -> closed buildings -> refinement -> roof model
+//! reconstruct  the stages: facets -> closed buildings; these -> refinement -> roof model
 //! refine       adjusts the wireframe of each building to the image edges of all views
 //! parapets     roofs below the parapets that bound them
 //! model_lines  lines that the finished model contradicts, duplicates and new lines
@@ -16,7 +16,9 @@ mod refine;
 
 pub use model_lines::{VerifiedLines, verify_lines};
 pub use parapets::Parapet;
-pub use reconstruct::{RoofTrace, UnrefinedFacets, reconstruct_roofs};
+pub use reconstruct::{
+    RefinementTrace, RoofTrace, UnrefinedFacets, reconstruct_roofs, refine_buildings,
+};
 #[cfg(test)]
 pub(crate) use refine::gable;
 pub use refine::{

@@ -1,4 +1,5 @@
-//! Method "lines": from competing planes to a roof model (B99 4.3, figure 24).
+//! Method "lines": from competing planes to closed buildings (B99 4.3, figure 24), which are then
+//! refined (B99 2).
 
 use serde::Serialize;
 
@@ -14,17 +15,24 @@ use crate::scene::Scene;
 use crate::solids::{SolidTrace, close_buildings};
 use crate::terrain::Ground;
 
-/// The steps from competing planes to buildings.
+/// The steps from competing planes to closed buildings.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct RoofTrace {
     /// Delineation and verification.
     pub facets: FacetTrace,
+    /// Walls and ground.
+    pub solids: SolidTrace,
+}
+
+/// The steps from closed buildings to refined ones.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct RefinementTrace {
     /// Gaps between facets that delineation had closed.
     pub gaps: Vec<RoofGap>,
     /// The facets before refinement.
     pub unrefined: UnrefinedFacets,
     /// What was regularised and refined in each building.
-    pub refinement: RefineTrace,
+    pub buildings: RefineTrace,
     /// Roofs that lie below the edges that bound them.
     pub parapets: Vec<Parapet>,
     /// Walls and ground.
@@ -43,40 +51,48 @@ pub struct UnrefinedFacets {
     pub sources: Vec<usize>,
 }
 
-/// Delineates and verifies facets, refines the buildings and closes the solids.
+/// Delineates and verifies facets, and closes the buildings below them.
 pub fn reconstruct_roofs(
     scene: &Scene,
     competing: Option<&CompetingPlanes>,
-    lines: &[Line3d],
     ground: &Ground,
     params: &RoofParams,
 ) -> (RoofModel, RoofTrace) {
-    let (facets, facet_trace) = competing.map_or_else(Default::default, |competing| {
+    let (found, facets) = competing.map_or_else(Default::default, |competing| {
         reconstruct_facets(scene, competing, ground, params)
     });
-    reached(0.6);
+    reached(0.9);
+    let (model, solids) = close_buildings(&found, |members| ground.below(members));
+    (model, RoofTrace { facets, solids })
+}
+
+/// Cuts facets back at gaps, refines the buildings and closes them again.
+pub fn refine_buildings(
+    scene: &Scene,
+    lines: &[Line3d],
+    model: &RoofModel,
+    ground: &Ground,
+    params: &RoofParams,
+) -> (RoofModel, RefinementTrace) {
     let below = |members: &[&Facet]| ground.below(members);
+    let (separated, gaps) = cut_back_at_gaps(scene, model, params);
     // Refinement needs facets that share vertices, and moves them; so the solids are made again.
-    let (delineated, solids) = close_buildings(&facets, below);
-    let (separated, gaps) = cut_back_at_gaps(scene, &delineated, params);
-    let (delineated, again) = close_buildings(&separated, below);
-    reached(0.65);
-    let (refined, refinement) = refine_roofs(scene, lines, &delineated, params);
-    reached(0.85);
+    let (delineated, solids) = close_buildings(&separated, below);
+    reached(0.2);
+    let (refined, buildings) = refine_roofs(scene, lines, &delineated, params);
+    reached(0.7);
     let (lowered, parapets) = below_parapets(scene, &refined);
     let (model, closed) = close_buildings(&lowered, below);
     let unrefined = UnrefinedFacets {
         facets: delineated.facets,
         sources: closed.sources.clone(),
     };
-    let solids = solids.then(again).then(closed);
-    let trace = RoofTrace {
-        facets: facet_trace,
+    let trace = RefinementTrace {
         gaps,
         unrefined,
-        refinement,
+        buildings,
         parapets,
-        solids,
+        solids: solids.then(closed),
         lines: VerifiedLines::default(),
     };
     (model, trace)

@@ -3,8 +3,8 @@
 //!
 //! ```text
 //! B99:  segments -> matches -> adjustment -> lines -> coplanar -> adjacency -> halfplanes
-//!                      ^           |   -> dense -> groups -> facets -> corrections -> model
-//!                      +-----------+ where views moved
+//!                      ^           |   -> dense -> groups -> facets -> refinement
+//!                      +-----------+ where views moved   -> corrections -> model
 //! W96:  regions -> directions -> clusters -> rectangles -> corrections -> model
 //! both: segments to adjustment, those of W96, then the others of B99, which take in its lines and
 //!       planes
@@ -58,9 +58,10 @@ impl Results {
         corrected.or_else(|| self.found_model())
     }
 
-    /// The roof model before corrections by hand.
+    /// The roof model before corrections by hand, as far as it has been refined.
     pub fn found_model(&self) -> Option<&RoofModel> {
-        let lines = self.facets.as_ref().map(|r| &r.value);
+        let refined = self.refinement.as_ref().map(|r| &r.value);
+        let lines = refined.or(self.facets.as_ref().map(|r| &r.value));
         lines.or(self.rectangles.as_ref().map(|r| &r.value))
     }
 
@@ -76,10 +77,17 @@ impl Results {
         reconstructed.map(|(track, _)| &track.evidence).collect()
     }
 
+    /// What the model says of each line, in the order of [`Self::all_lines`]; none before it is
+    /// refined.
+    pub fn evidence_in_model(&self) -> &[Evidence] {
+        let refined = self.refinement.as_ref();
+        refined.map_or(&[], |found| &found.trace.lines.evidence)
+    }
+
     /// Everything that was weighed.
     pub fn candidates(&self) -> Candidates {
         let facets = self.facets.as_ref();
-        let in_model = facets.map_or(&[][..], |found| &found.trace.lines.evidence);
+        let in_model = self.evidence_in_model();
         let all = self.all_lines().unwrap_or_default();
         let judged = |(line, evidence): (&Line3d, &Evidence)| JudgedLine {
             segment: line.segment,
@@ -101,7 +109,7 @@ impl Results {
     /// new lines of the model, which says of each whether it stands.
     pub fn all_lines(&self) -> Option<Vec<Line3d>> {
         let mut lines = self.lines.as_ref()?.value.clone();
-        let verified = &self.facets.as_ref()?.trace.lines;
+        let verified = &self.refinement.as_ref()?.trace.lines;
         lines.extend_from_slice(&verified.new_lines);
         for (line, evidence) in lines.iter_mut().zip(&verified.evidence) {
             line.probability = evidence.probability();

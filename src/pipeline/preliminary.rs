@@ -52,11 +52,11 @@ impl Run {
         Some(run)
     }
 
-    /// Runs the stages up to the facets, and returns the model.
+    /// Runs the stages up to the first model, and returns it.
     pub fn first_look(&mut self) -> RoofModel {
-        let facets = [Stage::Facets, Stage::Rectangles];
+        let models = [Stage::Refinement, Stage::Rectangles];
         let stages = self.stages();
-        if let Some(last) = facets.into_iter().find(|stage| stages.contains(stage)) {
+        if let Some(last) = models.into_iter().find(|stage| stages.contains(stage)) {
             self.step(last, &progress::silent());
         }
         self.results.found_model().cloned().unwrap_or_default()

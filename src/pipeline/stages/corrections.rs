@@ -20,7 +20,7 @@ impl StageDefinition for Corrections {
     const SECTION: &'static str = "by hand";
     const READS: &'static [&'static str] =
         &["corrections", "matching", "lines3d", "sweep", "roof.refine"];
-    const NEEDS: &'static [Stage] = &[Stage::Rectangles, Stage::Facets];
+    const NEEDS: &'static [Stage] = &[Stage::Rectangles, Stage::Refinement];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let model = before.found_model().expect("stages run in their order");

@@ -1,9 +1,8 @@
-//! Roof facets and the closed buildings below them (B99 4.3), and which lines these
-//! contradict.
+//! Roof facets and the closed buildings below them (B99 4.3).
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{is_any, required, warn_if};
-use crate::buildings::{RoofTrace, reconstruct_roofs, verify_lines};
+use crate::buildings::{RoofTrace, reconstruct_roofs};
 use crate::execution::Sharded;
 use crate::facets::RegisterTrace;
 use crate::model::RoofModel;
@@ -21,16 +20,19 @@ impl StageDefinition for Facets {
     const NAME: &'static str = "facets";
     const TITLE: &'static str = "Facets";
     const SECTION: &'static str = "B99 4.3";
-    const READS: &'static [&'static str] = &["roof"];
-    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::HalfPlanes, Stage::Groups];
+    const READS: &'static [&'static str] = &[
+        "roof.border_nats_per_m",
+        "roof.least_nats",
+        "roof.min_area_m2",
+        "roof.min_height_m",
+        "roof.register",
+    ];
+    const NEEDS: &'static [Stage] = &[Stage::HalfPlanes, Stage::Groups];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
-        let lines = &required(&before.lines).value;
         let ground = &required(&before.half_planes).ground;
         let competing = required(&before.groups).value.as_deref();
-        let (model, mut trace) = reconstruct_roofs(scene, competing, lines, ground, &params.roof);
-        trace.lines = verify_lines(scene, lines, &model, ground, params);
-        Ok((model, trace).into())
+        Ok(reconstruct_roofs(scene, competing, ground, &params.roof).into())
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
@@ -44,8 +46,6 @@ impl StageDefinition for Facets {
             counts: vec![
                 ("facets", facets.len()),
                 ("buildings", found.value.buildings.len()),
-                ("below parapets", found.trace.parapets.len()),
-                ("contradicted lines", found.trace.lines.contradicted.len()),
             ],
             warnings: [
                 warn_if(facets.is_empty() && has_planes, none),

@@ -22,6 +22,7 @@ mod lines;
 mod matches;
 mod model;
 mod objectspace;
+mod refinement;
 mod segments;
 
 use serde::de::DeserializeOwned;
@@ -130,6 +131,8 @@ stage_table! {
     Groups in groups: LINES,
     /// Roof facets and the closed buildings below them (B99 4.3).
     Facets in facets: LINES,
+    /// The buildings refined by the edges of all views (B99 2).
+    Refinement in refinement: LINES,
     /// What somebody corrects of the model by hand.
     Corrections in corrections: ALL,
     /// The textured model.

@@ -55,7 +55,7 @@ export const KINDS = {
   "theta-sweep": lab("halfplanes", "lines", "halfplanes", SimLab, sharpestHalfPlane),
   groups: lab("groups", "lines", "groups", GroupLab, largestGroup),
   "facet-plan": lab("facets", "lines", "facets", FacetLab, firstFacet),
-  refinement: lab("refinement", "lines", "facets", RefinementLab, busiestBuilding),
+  refinement: lab("refinement", "lines", "refinement", RefinementLab, busiestBuilding),
   "dense-planes": lab("dense", "lines", "dense", DenseLab, largestBuilding),
   "coplanar-sets": lab("coplanar", "coplanar", "coplanar", CoplanarLab, clearestSet),
   adjacency: lab("adjacency", "adjacency", "adjacency", AdjacencyLab, richestCorner),

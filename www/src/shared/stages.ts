@@ -101,7 +101,14 @@ export const STAGES = [
     title: "Facets",
     section: "B99 4.3",
     methods: ["lines", "combined", "coplanar", "adjacency"],
-    reads: ["roof"],
+    reads: ["roof.border_nats_per_m", "roof.least_nats", "roof.min_area_m2", "roof.min_height_m", "roof.register"],
+  },
+  {
+    name: "refinement",
+    title: "Refinement",
+    section: "B99 2",
+    methods: ["lines", "combined", "coplanar", "adjacency"],
+    reads: ["roof.refine", "roof.border_nats_per_m"],
   },
   {
     name: "corrections",

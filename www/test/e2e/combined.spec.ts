@@ -20,7 +20,18 @@ test("both methods find one model of a house, and each view tells of its own sta
   expect(names).toEqual([
     ...["segments", "matches", "adjustment"],
     ...["regions", "directions", "clusters", "rectangles"],
-    ...["lines", "coplanar", "adjacency", "halfplanes", "dense", "groups", "facets", "corrections", "model"],
+    ...[
+      "lines",
+      "coplanar",
+      "adjacency",
+      "halfplanes",
+      "dense",
+      "groups",
+      "facets",
+      "refinement",
+      "corrections",
+      "model",
+    ],
   ]);
 
   await test.step("the model is seen, by the method that made each facet", async () => {

@@ -173,7 +173,7 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
   expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
 
   await openTab(page, "Facets");
-  const facets = Number(/(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1]);
+  const facets = Number(/(\d+) facets/.exec((await stage(page, "refinement").textContent()) ?? "")?.[1]);
   await expect(page.getByTestId("plan").locator(".plan-facet")).toHaveCount(facets);
   const borders = page.getByTestId("plan").locator(".border-real[data-count]");
   expect(Number(await borders.getAttribute("data-count"))).toBeGreaterThan(facets);
@@ -335,7 +335,7 @@ test("the viewer: normals, cameras, measuring, a picture, and a view's own camer
     expect((await lookOf(page, viewer)).vivid).toBeGreaterThan(textured.vivid + 0.03);
   }).toPass({ timeout: 20_000 });
 
-  const facets = /(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1];
+  const facets = /(\d+) facets/.exec((await stage(page, "refinement").textContent()) ?? "")?.[1];
   const normals = await lookOf(page, viewer);
   await page.getByRole("button", { name: "By method" }).click();
   await expect(page.getByTestId("method-legend")).toHaveText(
@@ -411,7 +411,7 @@ test("only the stages behind a changed parameter run again", async () => {
   });
   await page.getByRole("button", { name: "Run all" }).click();
   await waitForStage(page, "model");
-  expect([...new Set(ran)]).toEqual(["facets", "corrections", "model"]);
+  expect([...new Set(ran)]).toEqual(["facets", "refinement", "corrections", "model"]);
   expect(await time("matches")).toBe(before);
   await expect(page).toHaveURL(/params=.*min_area_m2/);
 });
@@ -420,7 +420,7 @@ test("new lines of the model stand behind the matched ones, and say where they c
   const matched = Number(/(\d+) lines/.exec((await stage(page, "lines").textContent()) ?? "")?.[1]);
   // Such a link needs more than its tab: the line comes with the model.
   await reopen(page, "3D lines", `scene=demo&tab=lines&select=line:${matched}`);
-  await waitForStage(page, "facets");
+  await waitForStage(page, "refinement");
   await expect(page.getByRole("tab", { name: "3D lines" })).toHaveAttribute("aria-selected", "true");
   await expect(inspector().locator(".picked")).toHaveText(`3D line ${matched}`);
   await expect(inspector().locator("div", { hasText: /^Found/ })).toContainText("new: ");

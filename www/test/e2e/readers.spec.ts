@@ -14,7 +14,7 @@ import {
 /** What the stages found, in words and numbers, without their times. */
 async function found(page: Page): Promise<string> {
   const of = async (name: string) => (await stage(page, name).locator(".counts").getAttribute("title")) ?? "";
-  return `${await of("lines")}; ${await of("facets")}`;
+  return `${await of("lines")}; ${await of("refinement")}`;
 }
 
 async function reconstruct(page: Page, format: string): Promise<string> {

@@ -113,7 +113,7 @@ export function GroupLab({ figure }: { figure: Figure }) {
   const picked = figure.selection;
   if (grouping === null) {
     return (
-      <p class="lab-hint muted">Run the facets stage: its groups of coplanar half-planes appear here.</p>
+      <p class="lab-hint muted">Run the stage: its groups of coplanar half-planes appear here.</p>
     );
   }
   const order = grouping.groups

@@ -20,7 +20,7 @@ export function RefinementLab({ figure }: { figure: Figure }) {
   const building = shownBuilding(figure);
   const shown = buildings[building];
   if (shown === undefined) {
-    return <p class="lab-hint muted">Run the facets stage: what refinement tested appears here.</p>;
+    return <p class="lab-hint muted">Run the stage: what refinement tested appears here.</p>;
   }
   return (
     <div class="split-lab even">

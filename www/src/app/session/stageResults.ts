@@ -55,6 +55,13 @@ const FETCHED: Record<StageName, (from: ResultSource) => Promise<Partial<Results
     corrected: null,
     madeWith: from.params,
     verification: await from.call("verification"),
+    // Of other facets.
+    refinement: null,
+  }),
+  refinement: async (from) => ({
+    facets: await from.call("facets"),
+    corrected: null,
+    madeWith: from.params,
     refinement: await from.call("refinement"),
     // The model adds new lines to the matched ones.
     ...(await fetchLines(from)),

@@ -58,7 +58,7 @@ async function restoreIt(turn: Turn): Promise<void> {
     return;
   }
   if (isNewLine(opened.selection)) {
-    await runStages(turn, "facets");
+    await runStages(turn, "refinement");
   }
   const tabs: readonly Tab[] = TABS[method.value];
   batch(() => {

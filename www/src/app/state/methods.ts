@@ -9,13 +9,8 @@ export type { Method };
 const SHOWN_BY = { adjustment: "matches", corrections: "model" } as const;
 type ShownElsewhere = keyof typeof SHOWN_BY;
 
-/** Views of the stages, and beside them the photographs and what refinement did. */
-export type Tab = Exclude<StageName, ShownElsewhere> | "images" | "refinement";
-
-/** The views of a stage, in their order; one of its own name where it has no others. */
-const TABS_OF_STAGE: Partial<Record<StageName, readonly Tab[]>> = {
-  facets: ["facets", "refinement"],
-};
+/** Views of the stages, and beside them the photographs. */
+export type Tab = Exclude<StageName, ShownElsewhere> | "images";
 
 /** The stage views of each method. */
 export const TABS: Readonly<Record<Method, readonly Tab[]>> = {
@@ -36,7 +31,7 @@ function tabsOf(method: Method): Tab[] {
 }
 
 function tabsOfStage(name: StageName): readonly Tab[] {
-  return isShownElsewhere(name) ? [] : (TABS_OF_STAGE[name] ?? [name]);
+  return isShownElsewhere(name) ? [] : [name];
 }
 
 /** The view that tells most of a stage. */

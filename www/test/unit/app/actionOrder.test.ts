@@ -346,7 +346,7 @@ describe("a run", () => {
     expect(ran).toEqual(["halfplanes", "halfplanes"]);
     void page.dropParam(path);
     await untilIdle();
-    expect(ran.slice(2)).toEqual(["dense", "groups", "facets", "corrections", "model"]);
+    expect(ran.slice(2)).toEqual(["dense", "groups", "facets", "refinement", "corrections", "model"]);
     expect(new Set(page.stages.value.map(({ status }) => status))).toEqual(new Set(["done"]));
   });
 
@@ -367,6 +367,7 @@ describe("a run", () => {
       "dense",
       "groups",
       "facets",
+      "refinement",
       "corrections",
       "model",
     ];

@@ -116,7 +116,7 @@ describe("firstStageOf", () => {
   it("finds the stage that a group changes first", () => {
     expect(firstStageOf("sweep", stages)).toBe(6);
     expect(firstStageOf("dense", stages)).toBe(7);
-    expect(firstStageOf("texture", stages)).toBe(11);
+    expect(firstStageOf("texture", stages)).toBe(12);
     expect(firstStageOf("adjustment", stages)).toBe(stages.indexOf("matches"));
   });
 

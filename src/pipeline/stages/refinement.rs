@@ -1,0 +1,45 @@
+//! The buildings refined by the edges of all views (B99 2), and which lines they contradict.
+
+use super::{Findings, Outcome, Results, Stage, StageDefinition, required};
+use crate::buildings::{RefinementTrace, refine_buildings, verify_lines};
+use crate::execution::Sharded;
+use crate::model::RoofModel;
+use crate::params::Params;
+use crate::scene::Scene;
+
+/// The roof model.
+pub(super) type Found = Outcome<RoofModel, RefinementTrace>;
+
+pub(super) struct Refinement;
+
+impl StageDefinition for Refinement {
+    type Found = Found;
+
+    const NAME: &'static str = "refinement";
+    const TITLE: &'static str = "Refinement";
+    const SECTION: &'static str = "B99 2";
+    const READS: &'static [&'static str] = &["roof.refine", "roof.border_nats_per_m"];
+    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::HalfPlanes, Stage::Facets];
+
+    fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
+        let lines = &required(&before.lines).value;
+        let ground = &required(&before.half_planes).ground;
+        let facets = &required(&before.facets).value;
+        let (model, mut trace) = refine_buildings(scene, lines, facets, ground, &params.roof);
+        trace.lines = verify_lines(scene, lines, &model, ground, params);
+        Ok((model, trace).into())
+    }
+
+    fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {
+        let (model, trace) = (&found.value, &found.trace);
+        Findings {
+            counts: vec![
+                ("facets", model.facets.len()),
+                ("buildings", model.buildings.len()),
+                ("below parapets", trace.parapets.len()),
+                ("contradicted lines", trace.lines.contradicted.len()),
+            ],
+            warnings: Vec::new(),
+        }
+    }
+}
