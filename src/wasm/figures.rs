@@ -178,8 +178,7 @@ impl Session {
         let run = self.loaded()?;
         let lines = lines_of(run);
         let by_views = run.results().evidence_of_matches();
-        let facets = run.results().facets.as_ref();
-        let in_model = facets.map_or(&[][..], |found| &found.trace.lines.evidence);
+        let in_model = run.results().evidence_in_model();
         let record = |(i, line)| LineRecord {
             by_views: by_views.get(i).copied(),
             in_model: in_model.get(i),
@@ -282,11 +281,11 @@ impl Session {
     /// were tested, and the gaps that were opened (B99 2); `null` before that stage.
     #[wasm_bindgen(unchecked_return_type = "Refinement | null")]
     pub fn refinement(&self) -> Result<JsValue, JsValue> {
-        let found = self.loaded()?.results().facets.as_ref();
+        let found = self.loaded()?.results().refinement.as_ref();
         to_js(&found.map(|r| Refinement {
             gaps: &r.trace.gaps,
             before: &r.trace.unrefined,
-            trace: &r.trace.refinement,
+            trace: &r.trace.buildings,
         }))
     }
 

@@ -1,10 +1,6 @@
-//! The instance's memory: its allocator, and room ahead of it.
+//! The instance's memory: room ahead of what is needed.
 
 use std::hint::black_box;
-
-/// Smaller and faster in wasm than Rust's own, which most time of the allocator went into.
-#[global_allocator]
-static ALLOCATOR: talc::wasm::WasmDynamicTalc = talc::wasm::new_wasm_dynamic_allocator();
 
 /// Bytes that [`grow_ahead`] has free; they cost address space until they are written.
 const AHEAD: usize = 64 << 20;
