@@ -112,9 +112,7 @@ export function GroupLab({ figure }: { figure: Figure }) {
   const { grouping } = figure.results;
   const picked = figure.selection;
   if (grouping === null) {
-    return (
-      <p class="lab-hint muted">Run the stage: its groups of coplanar half-planes appear here.</p>
-    );
+    return <p class="lab-hint muted">Run the stage: its groups of coplanar half-planes appear here.</p>;
   }
   const order = grouping.groups
     .map((group, index) => ({ group, index }))
