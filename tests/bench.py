@@ -22,6 +22,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import textwrap
 import time
 from functools import partial
 
@@ -88,7 +89,7 @@ def measure(args, parts, before):
             print(f'{part} took {time.monotonic() - begun:.0f} s', flush=True)
             sections += section
     head = heading(args, before, shares)
-    args.page.write_text('\n'.join([*head, *sections]) + '\n')
+    args.page.write_text('\n'.join(map(wrapped, [*head, *sections])) + '\n')
     print(f'written to {args.page} after {time.monotonic() - start:.0f} s')
     return 0
 
@@ -356,6 +357,11 @@ def growth(args):
 
 
 # ---- the page -----------------------------------------------------------------------------------
+
+def wrapped(line):
+    """Prose in lines that a person reads; headings and rows of tables as they are."""
+    return line if line.startswith(('|', '#')) else textwrap.fill(line, 100, break_long_words=False, break_on_hyphens=False)
+
 
 def heading(args, before, shares):
     now = git('describe', '--always', '--dirty', '--exclude', '*')

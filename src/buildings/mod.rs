@@ -22,6 +22,6 @@ pub use reconstruct::{
 #[cfg(test)]
 pub(crate) use refine::gable;
 pub use refine::{
-    BuildingRefinement, RefineRejection, RefineTrace, RelationKind, RoofGap, SideKind, Statement,
+    BuildingRefinement, RefineRejection, RelationKind, RoofGap, SideKind, Statement,
     TestedRelation, adjust_to_statements, cut_back_at_gaps, refine_roofs,
 };

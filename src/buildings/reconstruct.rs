@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::model_lines::VerifiedLines;
 use super::parapets::{Parapet, below_parapets};
-use super::refine::{RefineTrace, RoofGap, cut_back_at_gaps, refine_roofs};
+use super::refine::{BuildingRefinement, RoofGap, cut_back_at_gaps, refine_roofs};
 use crate::execution::reached;
 use crate::facets::{CompetingPlanes, FacetTrace, reconstruct_facets};
 use crate::lines3d::Line3d;
@@ -32,7 +32,7 @@ pub struct RefinementTrace {
     /// The facets before refinement.
     pub unrefined: UnrefinedFacets,
     /// What was regularised and refined in each building.
-    pub buildings: RefineTrace,
+    pub buildings: Vec<BuildingRefinement>,
     /// Roofs that lie below the edges that bound them.
     pub parapets: Vec<Parapet>,
     /// Walls and ground.
@@ -41,7 +41,7 @@ pub struct RefinementTrace {
     pub lines: VerifiedLines,
 }
 
-/// The facets before refinement, whose buildings are those of [`RefineTrace`].
+/// The facets before refinement, whose buildings are those of [`RefinementTrace`].
 #[derive(Clone, Debug, Default, Serialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct UnrefinedFacets {

@@ -19,6 +19,8 @@
 
 mod adjustment;
 #[cfg(test)]
+mod changed_params;
+#[cfg(test)]
 mod page_table;
 mod preliminary;
 mod report;

@@ -76,7 +76,7 @@ impl ViewInfo {
     }
 }
 
-/// Tells the page how far the work is.
+/// Tells the page how far the work is, and makes room for what comes.
 pub(crate) fn listener_of(on_progress: &Function) -> Listener {
     let on_progress = on_progress.clone();
     Arc::new(move |fraction| {

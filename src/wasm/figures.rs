@@ -11,7 +11,7 @@ use super::arrays::end_points_px;
 use super::convert::{named_error, to_js};
 
 use super::session::Session;
-use crate::buildings::{RefineTrace, RoofGap, UnrefinedFacets};
+use crate::buildings::{BuildingRefinement, RoofGap, UnrefinedFacets};
 use crate::evidence::Evidence;
 use crate::figures::{correspondence, detected_stretches, segment_matching, warped_views};
 use crate::ids::SegmentId;
@@ -96,7 +96,7 @@ struct SideRecord {
 struct Refinement<'a> {
     gaps: &'a [RoofGap],
     before: &'a UnrefinedFacets,
-    trace: &'a RefineTrace,
+    buildings: &'a [BuildingRefinement],
 }
 
 /// A picture and what it shows.
@@ -285,7 +285,7 @@ impl Session {
         to_js(&found.map(|r| Refinement {
             gaps: &r.trace.gaps,
             before: &r.trace.unrefined,
-            trace: &r.trace.buildings,
+            buildings: &r.trace.buildings,
         }))
     }
 

@@ -89,27 +89,19 @@ pub struct BuildingRefinement {
     pub refused: Option<RefineRejection>,
 }
 
-/// The refinement of every building.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-pub struct RefineTrace {
-    /// In the order of the model's buildings.
-    pub buildings: Vec<BuildingRefinement>,
-}
-
 /// Refines the facets of a closed model, building by building. The result has as many facets in the
-/// same order, to be closed again.
+/// same order, to be closed again; what became of each building, in their order.
 pub fn refine_roofs(
     scene: &Scene,
     lines: &[Line3d],
     model: &RoofModel,
     params: &RoofParams,
-) -> (Vec<Facet>, RefineTrace) {
+) -> (Vec<Facet>, Vec<BuildingRefinement>) {
     let occluders = Occluders::new(&model.facets);
     let mut facets = model.facets.clone();
-    let mut trace = RefineTrace::default();
+    let mut buildings = Vec::new();
     if !params.refine.refine {
-        return (facets, trace);
+        return (facets, buildings);
     }
     let refined = crate::execution::map(&model.buildings, |i, building| {
         let old: Vec<&Facet> = (building.facets.iter())
@@ -134,9 +126,9 @@ pub fn refine_roofs(
         for (id, facet) in building.facets.iter().zip(new) {
             facets[id.index()] = facet;
         }
-        trace.buildings.push(report);
+        buildings.push(report);
     }
-    (facets, trace)
+    (facets, buildings)
 }
 
 impl BuildingRefinement {
@@ -394,12 +386,12 @@ mod tests {
 
     /// Refines and closes; gives the model and what happened to its only building.
     fn refine(scene: &Scene, model: &RoofModel) -> (RoofModel, BuildingRefinement) {
-        let (facets, trace) = refine_roofs(scene, &[], model, &RoofParams::default());
+        let (facets, refined) = refine_roofs(scene, &[], model, &RoofParams::default());
         let ground = model.buildings[0].ground_z;
         let (closed, solids) = close_buildings(&facets, |_| ground);
         assert_eq!(solids.rejected, []);
         assert_eq!(check_invariants(&closed), []);
-        (closed, trace.buildings[0].clone())
+        (closed, refined[0].clone())
     }
 
     /// Largest distance of a true corner from the nearest corner of the model, metres.
@@ -486,9 +478,9 @@ mod tests {
             view.gray.data.fill(0.5);
         }
         let model = changed(&truth, displaced);
-        let (facets, trace) = refine_roofs(&scene, &[], &model, &RoofParams::default());
+        let (facets, refined) = refine_roofs(&scene, &[], &model, &RoofParams::default());
         assert_eq!(facets, model.facets);
-        let refused = trace.buildings[0].refused;
+        let refused = refined[0].refused;
         assert_eq!(
             refused,
             Some(RefineRejection::FewObservations { observations: 0 })

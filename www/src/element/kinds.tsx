@@ -200,7 +200,7 @@ function firstFacet({ results: { facets } }: Figure): Selection | null {
 
 /** The building with the most relations. */
 function busiestBuilding({ results: { refinement } }: Figure): Selection | null {
-  const index = highest(refinement?.trace.buildings, ({ relations }) => relations.length);
+  const index = highest(refinement?.buildings, ({ relations }) => relations.length);
   return index < 0 ? null : { kind: "refinement", index };
 }
 

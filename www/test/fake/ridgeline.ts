@@ -460,22 +460,18 @@ export class Session implements CoreSession {
     return {
       gaps: [],
       before: { facets, sources: facets.map((_, i) => i) },
-      trace: {
-        buildings: [
-          {
-            building: 0,
-            sides: EDGES.length,
-            observations: 3 * EDGES.length,
-            error_before_px: 0.8,
-            error_after_px: 0.2,
-            largest_move_m: 0.1,
-            relations: [
-              { kind: "horizontal", sides: [{ p0, p1 }], deviation_m: 0.01, chi2: 0.4, adopted: true },
-            ],
-            refused: null,
-          },
-        ],
-      },
+      buildings: [
+        {
+          building: 0,
+          sides: EDGES.length,
+          observations: 3 * EDGES.length,
+          error_before_px: 0.8,
+          error_after_px: 0.2,
+          largest_move_m: 0.1,
+          relations: [{ kind: "horizontal", sides: [{ p0, p1 }], deviation_m: 0.01, chi2: 0.4, adopted: true }],
+          refused: null,
+        },
+      ],
     };
   }
 

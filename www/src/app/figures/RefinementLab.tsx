@@ -16,7 +16,7 @@ const MOST = 3;
 const NAMES_PX = 96;
 
 export function RefinementLab({ figure }: { figure: Figure }) {
-  const buildings = figure.results.refinement?.trace.buildings ?? [];
+  const buildings = figure.results.refinement?.buildings ?? [];
   const building = shownBuilding(figure);
   const shown = buildings[building];
   if (shown === undefined) {
@@ -49,7 +49,7 @@ export function RefinementLab({ figure }: { figure: Figure }) {
 
 /** The building of the selection, or the one with the most relations. */
 function shownBuilding({ results, selection: picked }: Figure): number {
-  const { buildings = [] } = results.refinement?.trace ?? {};
+  const { buildings = [] } = results.refinement ?? {};
   switch (picked?.kind) {
     case "refinement":
       return Math.min(picked.index, buildings.length - 1);

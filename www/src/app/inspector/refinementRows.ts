@@ -9,14 +9,14 @@ import { linkToFacet, linkToRefinement, type Row } from "./rowLinks";
 /** The refinement of the building that a facet is part of. */
 export function refinedRow(facet: number): Row[] {
   const building = buildingOfFacet(facet, results.value);
-  const found = results.value.refinement?.trace.buildings[building ?? -1];
+  const found = results.value.refinement?.buildings[building ?? -1];
   return building === undefined || found === undefined
     ? []
     : [["Refined", [linkToRefinement(building)], refinementWords(found)]];
 }
 
 export function refinementRows(index: number): Row[] {
-  const found = results.value.refinement?.trace.buildings[index];
+  const found = results.value.refinement?.buildings[index];
   if (found === undefined) {
     return [];
   }
@@ -32,7 +32,7 @@ export function refinementRows(index: number): Row[] {
 }
 
 export function relationRows(building: number, index: number): Row[] {
-  const found = results.value.refinement?.trace.buildings[building]?.relations[index];
+  const found = results.value.refinement?.buildings[building]?.relations[index];
   if (found === undefined) {
     return [];
   }

@@ -43,7 +43,7 @@ export function siblingsOf(picked: Selection | null): readonly Selection[] {
     case "refinement":
       return itemsOfTab("refinement");
     case "relation":
-      return numbered(refinement?.trace.buildings[picked.building]?.relations.length, (index) => ({
+      return numbered(refinement?.buildings[picked.building]?.relations.length, (index) => ({
         ...picked,
         index,
       }));
@@ -90,7 +90,7 @@ function itemsOfTab(name: Tab): readonly Selection[] {
     case "groups":
       return numbered(grouping?.groups.length, (index) => ({ kind: "group", index }));
     case "refinement":
-      return numbered(refinement?.trace.buildings.length, (index) => ({ kind: "refinement", index }));
+      return numbered(refinement?.buildings.length, (index) => ({ kind: "refinement", index }));
     case "rectangles":
       return numbered(rectangles?.pairs.length, (index) => ({ kind: "pair", index }));
     case "facets":

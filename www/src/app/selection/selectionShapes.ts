@@ -184,7 +184,7 @@ function ringsBefore(building: number, results: Results): readonly (readonly Vec
 }
 
 function relationOf(building: number, index: number, results: Results): readonly Segment3[] {
-  return results.refinement?.trace.buildings[building]?.relations[index]?.sides ?? [];
+  return results.refinement?.buildings[building]?.relations[index]?.sides ?? [];
 }
 
 function facetRings(index: number, results: Results): readonly (readonly Vec3[])[] {

@@ -134,7 +134,7 @@ function facetRows({ results: { facets } }: Figure): Row[] {
 }
 
 function relationRows({ results: { refinement } }: Figure): Row[] {
-  return (refinement?.trace.buildings ?? []).flatMap(({ relations }, building) =>
+  return (refinement?.buildings ?? []).flatMap(({ relations }, building) =>
     relations.map(({ kind, deviation_m, chi2, adopted }) => ({ building, kind, deviation_m, chi2, adopted })),
   );
 }

@@ -41,13 +41,13 @@ export function buildRefinement(refinement: Refinement): Layer {
 /** The old outline of a building with the sides of its relations, or the sides of one of them. */
 function shownOf(refinement: Refinement, selection: Selection | null): Group | null {
   if (selection?.kind === "relation") {
-    const relation = refinement.trace.buildings[selection.building]?.relations[selection.index];
+    const relation = refinement.buildings[selection.building]?.relations[selection.index];
     return relation === undefined
       ? null
       : new Group().add(over(ends(relation.sides), PALETTE.selected, SELECTED_PX));
   }
   const index = selection?.kind === "refinement" ? selection.index : -1;
-  const found = refinement.trace.buildings[index];
+  const found = refinement.buildings[index];
   if (found === undefined) {
     return null;
   }
