@@ -1,4 +1,6 @@
 import { describe, expect, it } from "vitest";
+import { TABS } from "../../../src/app/state/methods";
+import { KINDS } from "../../../src/kinds/kinds";
 import { formatSelection, KIND_NAMES, parseSelection, type Selection } from "../../../src/shared/selection";
 
 /** One of each kind, with the fields that its text names. */
@@ -25,7 +27,8 @@ const ONES: readonly Selection[] = [
 const WALL = { kind: "surface", surface: "wall", building: 1, areaM2: 3 } as const;
 
 describe("the kinds of things", () => {
-  it("are in one list", () => {
+  it("are in one list, a file each", () => {
+    expect(Object.keys(KINDS).sort()).toEqual([...KIND_NAMES].sort());
     expect([...ONES, { ...WALL, facet: 0 }].map(({ kind }) => kind).sort()).toEqual([...KIND_NAMES].sort());
   });
 
@@ -89,5 +92,10 @@ describe("the kinds of things", () => {
     "<script>:1",
   ])("take nothing from %j", (text) => {
     expect(parseSelection(text)).toBeNull();
+  });
+
+  it("are gone through in the tabs, one kind in each", () => {
+    const tabs = Object.values(KINDS).flatMap((kind) => kind.tabs ?? []);
+    expect([...tabs].sort()).toEqual([...TABS.combined].sort());
   });
 });
