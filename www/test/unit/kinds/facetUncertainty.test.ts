@@ -1,14 +1,12 @@
-import { afterEach, describe, expect, it } from "vitest";
-import { rowsOf } from "../../../src/app/inspector/selectionRows";
-import { NO_RESULTS, restoreResults } from "../../../src/app/state/results";
+import { describe, expect, it } from "vitest";
+import { rowsOf } from "../../../src/kinds/kinds";
 import { FACETS } from "../../fake/ridgeline";
+import { about } from "./about";
 
 const rowsOfFacet = (facet: (typeof FACETS)[number]) => {
-  restoreResults({ main: { ...NO_RESULTS, facets: [facet] }, regions: NO_RESULTS });
-  return new Map(rowsOf({ kind: "facet", index: 0 }).map(([label, value]) => [label, value]));
+  const rows = rowsOf({ kind: "facet", index: 0 }, about({ facets: [facet] }));
+  return new Map(rows.map(([label, value]) => [label, value]));
 };
-
-afterEach(() => restoreResults({ main: NO_RESULTS, regions: NO_RESULTS }));
 
 describe("how well a facet is known", () => {
   const known = FACETS[0] as (typeof FACETS)[number];

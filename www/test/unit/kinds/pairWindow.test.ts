@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { windowOf } from "../../../src/app/images/pairWindow";
+import { windowOf } from "../../../src/kinds/lines/pair";
 
 /** An eave along y = 2 at 5 m and a ridge along y = 6 at 8 m: 5 m apart in their plane. */
 const LINES = Float64Array.of(1, 2, 5, 11, 2, 5, 3, 6, 8, 9, 6, 8);
