@@ -2,9 +2,10 @@
 //! tests all run a reconstruction through [`Run`].
 //!
 //! ```text
-//! B99:  segments -> matches -> adjustment -> lines -> coplanar -> adjacency -> halfplanes
-//!                      ^           |   -> dense -> groups -> facets -> refinement
-//!                      +-----------+ where views moved   -> corrections -> model
+//! B99:  segments -> matches -> adjustment -> lines -> ground -> coplanar -> adjacency
+//!                      ^           |   -> halfplanes -> dense -> groups -> facets
+//!                      +-----------+   -> refinement -> corrections -> model
+//!                   where views moved
 //! W96:  regions -> directions -> clusters -> rectangles -> corrections -> model
 //! both: segments to adjustment, those of W96, then the others of B99, which take in its lines and
 //!       planes
@@ -279,7 +280,7 @@ impl Run {
         };
         let mut files = export_all(&borrowed, &self.params.texture);
         let known = report::KnownReport {
-            terrain: (self.results.half_planes.as_ref()).and_then(|found| found.ground.terrain()),
+            terrain: (self.results.ground.as_ref()).and_then(|ground| ground.terrain()),
             footprints: (self.results.facets.as_ref())
                 .and_then(|found| found.trace.facets.register.as_ref()),
             point_cloud: (self.results.dense.as_ref())

@@ -378,8 +378,7 @@ fn part(
     };
     let kept = cell.keep(all, &scene.origin);
     let model = subset(all, &kept);
-    let ground = results.half_planes.as_ref().map(|found| &found.ground);
-    let walls = (place_walls_of(scene, all, &kept, ground).into_iter())
+    let walls = (place_walls_of(scene, all, &kept, results.ground.as_ref()).into_iter())
         .zip(kept.iter().zip(&model.buildings))
         .map(|(walls, (&b, own))| walls_of(&walls, &all.buildings[b], own, &Vector3::zeros()))
         .collect();

@@ -26,7 +26,7 @@ use crate::pipeline::{Run, Stage};
 use crate::planes::dense::highest_surface;
 use crate::planes::terrain::Ground;
 
-/// The stage after which it is asked: the first one that knows the ground.
+/// The stage after which it is asked: the last one that takes little time.
 pub(super) const ASKED_AFTER: Stage = Stage::HalfPlanes;
 
 /// May no building of a cell be found by the stages behind [`ASKED_AFTER`]? Never of methods that
@@ -39,12 +39,12 @@ pub(super) fn is_vacant(run: &Run, cell: &Cell) -> bool {
     let high = Point2::new(x1 - x + SLACK_M, y1 - y + SLACK_M);
     match run.params().method {
         Method::Lines | Method::Coplanar | Method::Adjacency => {
-            let (Some(lines), Some(found)) = (&results.lines, &results.half_planes) else {
+            let (Some(lines), Some(ground)) = (&results.lines, &results.ground) else {
                 return false;
             };
             let (lines, roof) = (&lines.value, &run.params().roof);
             is_nothing_known(scene, [low, high])
-                && is_nothing_high(scene, lines, &found.ground, [low, high], roof)
+                && is_nothing_high(scene, lines, ground, [low, high], roof)
         }
         Method::Rectangles | Method::Combined => false,
     }

@@ -114,11 +114,11 @@ impl Session {
     }
 
     /// How the terrain model that is known compares with the images; `null` without one, and before
-    /// the half-planes.
+    /// the ground.
     #[wasm_bindgen(unchecked_return_type = "TerrainComparison | null")]
     pub fn terrain(&self) -> Result<JsValue, JsValue> {
-        let found = self.loaded()?.results().half_planes.as_ref();
-        to_js(&found.and_then(|h| h.ground.terrain()))
+        let ground = self.loaded()?.results().ground.as_ref();
+        to_js(&ground.and_then(|ground| ground.terrain()))
     }
 
     /// The sets of coplanar lines with their polygons, `{sets, trace}`; `null` before that stage.

@@ -19,7 +19,7 @@ impl StageDefinition for Dense {
     const TITLE: &'static str = "Dense planes";
     const SECTION: &'static str = "B99 2";
     const READS: &'static [&'static str] = &["dense", "point_cloud"];
-    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::HalfPlanes];
+    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground];
     const SHARD_MAPS: &'static [&'static str] = &["levels", "patches"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
@@ -27,7 +27,7 @@ impl StageDefinition for Dense {
             return Ok((Vec::new(), DenseTrace::default()).into());
         }
         let lines = &required(&before.lines).value;
-        let ground = &required(&before.half_planes).ground;
+        let ground = required(&before.ground);
         Ok(dense_planes(scene, lines, ground, &params.point_cloud)?.into())
     }
 

@@ -27,10 +27,10 @@ impl StageDefinition for Facets {
         "roof.min_height_m",
         "roof.register",
     ];
-    const NEEDS: &'static [Stage] = &[Stage::HalfPlanes, Stage::Groups];
+    const NEEDS: &'static [Stage] = &[Stage::Ground, Stage::Groups];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
-        let ground = &required(&before.half_planes).ground;
+        let ground = required(&before.ground);
         let competing = required(&before.groups).value.as_deref();
         Ok(reconstruct_roofs(scene, competing, ground, &params.roof).into())
     }
@@ -38,8 +38,7 @@ impl StageDefinition for Facets {
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
         let facets = &found.value.facets;
         let none = "no roof facet was found: the model is empty";
-        let half_planes = before.half_planes.as_ref();
-        let has_planes = half_planes.is_some_and(|found| !found.value.is_empty())
+        let has_planes = is_any(&before.half_planes)
             || is_any(&before.coplanar)
             || is_any(&before.adjacency);
         Findings {

@@ -37,6 +37,7 @@ impl StageDefinition for Groups {
     const NEEDS: &'static [Stage] = &[
         Stage::Segments,
         Stage::Lines,
+        Stage::Ground,
         Stage::Coplanar,
         Stage::Adjacency,
         Stage::HalfPlanes,
@@ -46,7 +47,6 @@ impl StageDefinition for Groups {
     const SHARD_MAPS: &'static [&'static str] = &["planes"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
-        let half_planes = required(&before.half_planes);
         let rectangles = before.rectangles.as_ref();
         let rectangles = rectangles.map_or_else(Vec::new, |found| proposed_planes(&found.trace));
         let dense = before.dense.iter().flat_map(|found| &found.value);
@@ -85,8 +85,8 @@ impl StageDefinition for Groups {
         let evidence = FacetInput {
             segments: &required(&before.segments).value,
             lines: &required(&before.lines).value,
-            half_planes: &half_planes.value,
-            ground: &half_planes.ground,
+            half_planes: &required(&before.half_planes).value,
+            ground: required(&before.ground),
             proposals: &proposals,
             cloud: cloud.as_ref(),
             line_pairs: params.method.pairs_lines(),

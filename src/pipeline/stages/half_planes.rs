@@ -1,24 +1,15 @@
-//! The ground, and half-planes at the 3D lines (B99 4.1).
+//! Half-planes at the 3D lines (B99 4.1).
 
-use super::{Findings, Results, Stage, StageDefinition};
-use super::{from_bytes, is_any, required, to_bytes, warn_if};
+use super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::{is_any, required, to_bytes, untraced, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::ids::LineId;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
 use crate::planes::half_planes::{HalfPlane, SweepTrace, sweep_half_planes};
-use crate::planes::terrain::{Ground, TerrainComparison};
 
-/// Half-planes, and the ground above which they were sought.
-#[derive(Clone, Debug)]
-pub struct Found {
-    /// Half-planes.
-    pub value: Vec<HalfPlane>,
-    /// The ground.
-    pub ground: Ground,
-    /// What became of every side of every line.
-    pub trace: SweepTrace,
-}
+/// Half-planes, and what became of every side of every line.
+pub(super) type Found = Outcome<Vec<HalfPlane>, SweepTrace>;
 
 pub(super) struct HalfPlanes;
 
@@ -29,12 +20,12 @@ impl StageDefinition for HalfPlanes {
     const TITLE: &'static str = "Half-planes";
     const SECTION: &'static str = "B99 4.1";
     const READS: &'static [&'static str] = &["sweep"];
-    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Coplanar];
-    const SHARD_MAPS: &'static [&'static str] = &["ground", "sides"];
+    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground, Stage::Coplanar];
+    const SHARD_MAPS: &'static [&'static str] = &["sides"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let lines = &required(&before.lines).value;
-        let ground = Ground::estimate(scene, lines)?;
+        let ground = required(&before.ground);
         let swept = if params.method.pairs_lines() {
             &lines[..]
         } else {
@@ -45,12 +36,7 @@ impl StageDefinition for HalfPlanes {
             let line = &lines[id.index()];
             sets.iter().any(|set| set.explains(id, line, side))
         };
-        let (value, trace) = sweep_half_planes(scene, swept, &ground, &explained, &params.sweep)?;
-        Ok(Found {
-            value,
-            ground,
-            trace,
-        })
+        Ok(sweep_half_planes(scene, swept, ground, &explained, &params.sweep)?.into())
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
@@ -64,29 +50,15 @@ impl StageDefinition for HalfPlanes {
                 ("half-planes", found.value.len()),
                 ("correlations", correlations),
             ],
-            warnings: [
-                warn_if(is_empty && was_swept && is_any(&before.lines), none),
-                found
-                    .ground
-                    .terrain()
-                    .and_then(TerrainComparison::warning)
-                    .into_iter()
-                    .collect(),
-            ]
-            .concat(),
+            warnings: warn_if(is_empty && was_swept && is_any(&before.lines), none),
         }
     }
 
     fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&(&found.value, &found.ground))
+        to_bytes(&found.value)
     }
 
     fn unpack(bytes: &[u8]) -> Option<Found> {
-        let (value, ground) = from_bytes(bytes)?;
-        Some(Found {
-            value,
-            ground,
-            trace: SweepTrace::default(),
-        })
+        untraced(bytes)
     }
 }

@@ -16,6 +16,7 @@ mod coplanar;
 mod corrections;
 mod dense;
 mod facets;
+mod ground;
 mod groups;
 mod half_planes;
 mod lines;
@@ -119,11 +120,13 @@ stage_table! {
     Rectangles in rectangles of objectspace: RECTANGLES,
     /// 3D lines (B99 3.2).
     Lines in lines: LINES,
+    /// The height of the ground.
+    Ground in ground: LINES,
     /// Coplanar lines and their polygons (B99 2, 5).
     Coplanar in coplanar: COPLANAR,
     /// Corners matched over the views, and the planes that they propose (B99 2).
     Adjacency in adjacency: ADJACENCY,
-    /// The ground, and half-planes at the 3D lines (B99 4.1).
+    /// Half-planes at the 3D lines (B99 4.1).
     HalfPlanes in half_planes: LINES,
     /// Planes from dense matching (B99 2).
     Dense in dense: DENSE,

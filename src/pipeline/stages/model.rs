@@ -28,16 +28,15 @@ impl StageDefinition for Model {
     const TITLE: &'static str = "Model";
     const SECTION: &'static str = "walls, texture, files";
     const READS: &'static [&'static str] = &["texture"];
-    const NEEDS: &'static [Stage] = &[Stage::Corrections];
+    const NEEDS: &'static [Stage] = &[Stage::Ground, Stage::Corrections];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let model = before.roof_model().expect("stages run in their order");
         let (value, trace) = texture_model(scene, model, &params.texture);
-        let ground = before.half_planes.as_ref().map(|found| &found.ground);
         Ok(Found {
             value,
             trace,
-            walls: place_walls(scene, model, ground),
+            walls: place_walls(scene, model, before.ground.as_ref()),
         })
     }
 

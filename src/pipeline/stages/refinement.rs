@@ -19,11 +19,11 @@ impl StageDefinition for Refinement {
     const TITLE: &'static str = "Refinement";
     const SECTION: &'static str = "B99 2";
     const READS: &'static [&'static str] = &["roof.refine", "roof.border_nats_per_m"];
-    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::HalfPlanes, Stage::Facets];
+    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground, Stage::Facets];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let lines = &required(&before.lines).value;
-        let ground = &required(&before.half_planes).ground;
+        let ground = required(&before.ground);
         let facets = &required(&before.facets).value;
         let (model, mut trace) = refine_buildings(scene, lines, facets, ground, &params.roof);
         trace.lines = verify_lines(scene, lines, &model, ground, params);

@@ -32,7 +32,7 @@ pub fn sweep_half_planes(
     let sides: Vec<(usize, Side)> = (0..lines.len())
         .flat_map(|i| [(i, Side::Left), (i, Side::Right)])
         .collect();
-    let swept = sharded_map("sides", &sides, 0.05..1.0, |_, &(i, side)| {
+    let swept = sharded_map("sides", &sides, 0.0..1.0, |_, &(i, side)| {
         let mut counts = SweepTrace::default();
         let line = LineId::from_index(i);
         if ground.is_near(&lines[i].segment, params.min_height_m) {

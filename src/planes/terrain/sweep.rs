@@ -49,7 +49,7 @@ pub(super) fn matched_positions(
     let heights: Vec<f64> = (0..levels)
         .map(|i| low + (high - low) * i as f64 / (levels - 1) as f64)
         .collect();
-    let maps = sharded_map("ground", &heights, 0.0..0.1, |_, &z| {
+    let maps = sharded_map("ground", &heights, 0.0..1.0, |_, &z| {
         let plane = Plane {
             normal: Vector3::z(),
             d: -z,

@@ -1,0 +1,44 @@
+//! The height of the ground.
+
+use super::{Findings, Results, Stage, StageDefinition};
+use super::{from_bytes, required, to_bytes};
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::planes::terrain::{Ground as Surface, TerrainComparison};
+
+/// The ground, which has a height everywhere.
+pub(super) type Found = Surface;
+
+pub(super) struct Ground;
+
+impl StageDefinition for Ground {
+    type Found = Found;
+
+    const NAME: &'static str = "ground";
+    const TITLE: &'static str = "Ground";
+    const SECTION: &'static str = "height of the ground";
+    const READS: &'static [&'static str] = &[];
+    const NEEDS: &'static [Stage] = &[Stage::Lines];
+    const SHARD_MAPS: &'static [&'static str] = &["ground"];
+
+    fn run(scene: &Scene, _: &Params, before: &Results) -> Sharded<Found> {
+        Surface::estimate(scene, &required(&before.lines).value)
+    }
+
+    fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {
+        let terrain = found.terrain().and_then(TerrainComparison::warning);
+        Findings {
+            counts: Vec::new(),
+            warnings: terrain.into_iter().collect(),
+        }
+    }
+
+    fn pack(found: &Found) -> Vec<u8> {
+        to_bytes(found)
+    }
+
+    fn unpack(bytes: &[u8]) -> Option<Found> {
+        from_bytes(bytes)
+    }
+}
