@@ -82,7 +82,7 @@ fn new_parameters_of_one_method_keep_what_the_other_found_before() {
     assert!(run.has(Stage::Rectangles) && run.has(Stage::Lines) && !run.has(Stage::HalfPlanes));
     params.objectspace.planes.min_area_m2 = 5.0;
     run.set_params(params.clone());
-    assert!(run.has(Stage::Clusters) && !run.has(Stage::Rectangles) && !run.has(Stage::Lines));
+    assert!(run.has(Stage::Ground) && !run.has(Stage::Rectangles));
     params.method = Method::Lines;
     run.set_params(params.clone());
     assert!(run.summaries().is_empty(), "another method");

@@ -6,9 +6,9 @@
 //!                      ^           |   -> halfplanes -> dense -> groups -> facets
 //!                      +-----------+   -> refinement -> corrections -> model
 //!                   where views moved
-//! W96:  regions -> directions -> clusters -> rectangles -> corrections -> model
-//! both: segments to adjustment, those of W96, then the others of B99, which take in its lines and
-//!       planes
+//! W96:  regions -> directions -> clusters -> ground -> rectangles -> corrections -> model
+//! both: segments to adjustment, those of W96 up to the clusters, lines and ground of both, then
+//!       the planes of each
 //! ```
 //!
 //! `stages` has a file for each of them, and how to add one; `sharding` is what passes between

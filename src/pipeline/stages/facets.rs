@@ -38,9 +38,8 @@ impl StageDefinition for Facets {
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
         let facets = &found.value.facets;
         let none = "no roof facet was found: the model is empty";
-        let has_planes = is_any(&before.half_planes)
-            || is_any(&before.coplanar)
-            || is_any(&before.adjacency);
+        let has_planes =
+            is_any(&before.half_planes) || is_any(&before.coplanar) || is_any(&before.adjacency);
         Findings {
             counts: vec![
                 ("facets", facets.len()),

@@ -5,6 +5,7 @@ use super::{from_bytes, required, to_bytes};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
+use crate::planes::objectspace::ground_of_clusters;
 use crate::planes::terrain::{Ground as Surface, TerrainComparison};
 
 /// The ground, which has a height everywhere.
@@ -19,11 +20,17 @@ impl StageDefinition for Ground {
     const TITLE: &'static str = "Ground";
     const SECTION: &'static str = "height of the ground";
     const READS: &'static [&'static str] = &[];
-    const NEEDS: &'static [Stage] = &[Stage::Lines];
+    const NEEDS: &'static [Stage] = &[Stage::Directions, Stage::Clusters, Stage::Lines];
     const SHARD_MAPS: &'static [&'static str] = &["ground"];
 
     fn run(scene: &Scene, _: &Params, before: &Results) -> Sharded<Found> {
-        Surface::estimate(scene, &required(&before.lines).value)
+        match &before.lines {
+            Some(lines) => Surface::estimate(scene, &lines.value),
+            None => {
+                let windows = &required(&before.directions).value;
+                ground_of_clusters(scene, windows, &required(&before.clusters).value)
+            }
+        }
     }
 
     fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {

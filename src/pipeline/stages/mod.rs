@@ -116,12 +116,12 @@ stage_table! {
     Directions in directions of objectspace: RECTANGLES,
     /// 3D lines by clustering (W96 3.5).
     Clusters in clusters of objectspace: RECTANGLES,
-    /// Planes between parallel lines and the closed buildings below them (W96 3.6).
-    Rectangles in rectangles of objectspace: RECTANGLES,
     /// 3D lines (B99 3.2).
     Lines in lines: LINES,
     /// The height of the ground.
-    Ground in ground: LINES,
+    Ground in ground: ALL,
+    /// Planes between parallel lines and the closed buildings below them (W96 3.6).
+    Rectangles in rectangles of objectspace: RECTANGLES,
     /// Coplanar lines and their polygons (B99 2, 5).
     Coplanar in coplanar: COPLANAR,
     /// Corners matched over the views, and the planes that they propose (B99 2).

@@ -41,6 +41,6 @@ pub use rectangles::{
 };
 pub use stages::{
     FoundLine, RectangleTrace, find_clusters, find_directions, find_rectangles, find_regions,
-    image_segments, proposed_planes, world_lines,
+    ground_of_clusters, image_segments, proposed_planes, world_lines,
 };
 pub use windows::{Window, WindowTrace};

@@ -158,24 +158,33 @@ impl RectangleTrace {
     }
 }
 
-/// Planes between parallel lines, the best set of them, and the ground (W96 3.6).
+/// The ground, swept between the heights of the windows: the 3D lines may all be those of a roof.
+pub fn ground_of_clusters(
+    scene: &Scene,
+    windows: &[Window],
+    found: &[FoundLine],
+) -> Sharded<Ground> {
+    let segments: Vec<Segment3> = found.iter().map(|f| f.line.segment).collect();
+    let z_range = windows.first().map(|w| w.z_range_m);
+    Ground::of_segments(scene, &segments, z_range)
+}
+
+/// Planes between parallel lines, and the best set of them (W96 3.6).
 pub fn find_rectangles(
     scene: &Scene,
     lines: &[Vec<RegionLine>],
     windows: &[Window],
     found: &[FoundLine],
+    ground: &Ground,
     params: &Params,
-) -> Sharded<(Ground, RectangleTrace)> {
+) -> Sharded<RectangleTrace> {
     let image_lines = image_lines(scene, lines);
-    let segments: Vec<Segment3> = found.iter().map(|f| f.line.segment).collect();
-    let z_range = windows.first().map(|w| w.z_range_m);
-    let ground = Ground::of_segments(scene, &segments, z_range)?;
     let all: Vec<ClusterLine> = found.iter().map(|f| f.line.clone()).collect();
     let mut search = PlaneSearch {
         scene,
         image_lines: &image_lines,
         lines: &all,
-        ground: &ground,
+        ground,
         solids: &[],
         params: &params.objectspace.planes,
         border_nats_per_m: params.roof.border_nats_per_m,
@@ -211,7 +220,7 @@ pub fn find_rectangles(
     )? {
         trace.chosen = best_set(&trace.candidates);
     }
-    Ok((ground, trace))
+    Ok(trace)
 }
 
 /// Window, pair of directions and direction of a line.

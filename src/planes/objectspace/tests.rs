@@ -19,7 +19,8 @@ fn model(scene: &Scene) -> RoofModel {
     let (lines, _) = find_regions(scene, of_regions).unwrap();
     let (windows, _) = find_directions(scene, &lines, of_regions).unwrap();
     let (found, _) = find_clusters(scene, &lines, &windows, of_regions).unwrap();
-    let (ground, trace) = find_rectangles(scene, &lines, &windows, &found, &params).unwrap();
+    let ground = ground_of_clusters(scene, &windows, &found).unwrap();
+    let trace = find_rectangles(scene, &lines, &windows, &found, &ground, &params).unwrap();
     let model = roofs_of_rectangles(&trace, &ground);
     assert_eq!(check_invariants(&model), []);
     model
@@ -132,7 +133,8 @@ fn the_best_plane_is_refused_where_the_images_do_not_agree() {
         let of_regions = &params.objectspace;
         let (windows, _) = find_directions(scene, &lines, of_regions).unwrap();
         let (found, _) = find_clusters(scene, &lines, &windows, of_regions).unwrap();
-        let (_, trace) = find_rectangles(scene, &lines, &windows, &found, &params).unwrap();
+        let ground = ground_of_clusters(scene, &windows, &found).unwrap();
+        let trace = find_rectangles(scene, &lines, &windows, &found, &ground, &params).unwrap();
         let weak = |p: &&PlaneTrace| p.rejection == Some(PlaneRejection::Weak);
         (trace.chosen.len(), trace.pairs.iter().filter(weak).count())
     };

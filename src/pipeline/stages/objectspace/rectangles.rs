@@ -21,15 +21,21 @@ impl StageDefinition for Rectangles {
     const TITLE: &'static str = "Rectangles";
     const SECTION: &'static str = "W96 3.6";
     const READS: &'static [&'static str] = &["objectspace.planes", "roof.border_nats_per_m"];
-    const NEEDS: &'static [Stage] = &[Stage::Regions, Stage::Directions, Stage::Clusters];
-    const SHARD_MAPS: &'static [&'static str] = &["ground", "planes", "behind"];
+    const NEEDS: &'static [Stage] = &[
+        Stage::Regions,
+        Stage::Directions,
+        Stage::Clusters,
+        Stage::Ground,
+    ];
+    const SHARD_MAPS: &'static [&'static str] = &["planes", "behind"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let lines = &required(&before.regions).value;
         let windows = &required(&before.directions).value;
         let clusters = &required(&before.clusters).value;
-        let (ground, trace) = find_rectangles(scene, lines, windows, clusters, params)?;
-        Ok((roofs_of_rectangles(&trace, &ground), trace).into())
+        let ground = required(&before.ground);
+        let trace = find_rectangles(scene, lines, windows, clusters, ground, params)?;
+        Ok((roofs_of_rectangles(&trace, ground), trace).into())
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
