@@ -35,7 +35,7 @@ impl LineOrigin {
     }
 }
 
-/// Why the finished model rejects a line ([`crate::roofs::buildings::verify_lines`]).
+/// Why the finished model rejects a line ([`crate::roofs::buildings::VerifiedLines`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]

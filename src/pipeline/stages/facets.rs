@@ -5,8 +5,7 @@ use super::{is_any, required, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
-use crate::roofs::buildings::{RoofTrace, reconstruct_roofs};
-use crate::roofs::facets::RegisterTrace;
+use crate::roofs::facets::{RegisterTrace, RoofTrace, reconstruct_roofs};
 use crate::roofs::model::RoofModel;
 
 /// Facets and buildings.

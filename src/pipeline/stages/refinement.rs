@@ -4,7 +4,7 @@ use super::{Findings, Outcome, Results, Stage, StageDefinition, required};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
-use crate::roofs::buildings::{RefinementTrace, refine_buildings, verify_lines};
+use crate::roofs::buildings::{RefinementTrace, refine_buildings};
 use crate::roofs::model::RoofModel;
 
 /// The roof model.
@@ -25,9 +25,7 @@ impl StageDefinition for Refinement {
         let lines = &required(&before.lines).value;
         let ground = required(&before.ground);
         let facets = &required(&before.facets).value;
-        let (model, mut trace) = refine_buildings(scene, lines, facets, ground, &params.roof);
-        trace.lines = verify_lines(scene, lines, &model, ground, params);
-        Ok((model, trace).into())
+        Ok(refine_buildings(scene, lines, facets, ground, params).into())
     }
 
     fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {

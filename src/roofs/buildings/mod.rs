@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! rectangles   chosen planes of W96 -> closed buildings
-//! reconstruct  the stages: facets -> closed buildings; these -> refinement -> roof model
+//! refinement   the stage: closed buildings -> refined ones
 //! refine       adjusts the wireframe of each building to the image edges of all views
 //! parapets     roofs below the parapets that bound them
 //! model_lines  lines that the finished model contradicts, duplicates and new lines
@@ -12,15 +12,12 @@
 
 mod model_lines;
 mod parapets;
-mod reconstruct;
 mod rectangles;
 mod refine;
+mod refinement;
 
-pub use model_lines::{VerifiedLines, verify_lines};
+pub use model_lines::VerifiedLines;
 pub use parapets::Parapet;
-pub use reconstruct::{
-    RefinementTrace, RoofTrace, UnrefinedFacets, reconstruct_roofs, refine_buildings,
-};
 pub use rectangles::roofs_of_rectangles;
 #[cfg(test)]
 pub(crate) use refine::gable;
@@ -28,3 +25,4 @@ pub use refine::{
     BuildingRefinement, RefineRejection, RelationKind, RoofGap, SideKind, Statement,
     TestedRelation, adjust_to_statements, cut_back_at_gaps, refine_roofs,
 };
+pub use refinement::{RefinementTrace, UnrefinedFacets, refine_buildings};

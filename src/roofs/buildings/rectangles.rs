@@ -1,10 +1,10 @@
 //! Method "rectangles": from the chosen planes between parallel lines to closed buildings (W96 3.6).
 
-use super::reconstruct::close_above;
 use crate::base::ids::{BuildingId, LineId, ProposalOrigin};
 use crate::planes::objectspace::{PlaneCandidate, RectangleTrace};
 use crate::planes::terrain::Ground;
 use crate::roofs::model::{Facet, RoofModel};
+use crate::roofs::solids::close_above;
 
 /// The buildings below the chosen planes.
 pub fn roofs_of_rectangles(found: &RectangleTrace, ground: &Ground) -> RoofModel {

@@ -42,7 +42,7 @@ pub use borders::{Border, BorderKind};
 pub use compete::{GroupingTrace, competing_planes};
 pub use competing_planes::CompetingPlanes;
 pub use input::{FacetInput, PlacedCloud};
-pub use reconstruct::{FacetTrace, reconstruct_facets};
+pub use reconstruct::{FacetTrace, RoofTrace, reconstruct_roofs};
 pub use register::{FootprintFinding, FootprintVerdict, RegisterTrace, RegisterVerdict};
 pub use verification::{FacetRejection, RejectedFacet};
 pub(crate) use verification::{PartVisibility, largest_slope, windows_inside};

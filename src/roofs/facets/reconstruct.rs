@@ -1,6 +1,7 @@
-//! From competing planes to facets: the stage that orders B99 4.3.
+//! From competing planes to facets and the closed buildings below them: the stage that orders B99
+//! 4.3.
 //!
-//! labelling -> outlines -> verification. A facet that fails verification is rejected and the
+//! labelling -> outlines -> verification -> walls (figure 24). A facet that fails verification is rejected and the
 //! labelling continues without it, as the paper updates the neighbours of a plane that is removed.
 
 use std::collections::BTreeMap;
@@ -15,11 +16,13 @@ use super::verification::{
     FacetRejection, KnownEvidence, Measured, RejectedFacet, tail_on_ground, verify,
 };
 use crate::base::evidence::JudgedFacet;
+use crate::base::execution::reached;
 use crate::base::labelling::Labelling;
 use crate::base::params::RoofParams;
 use crate::orienting::scene::Scene;
 use crate::planes::terrain::Ground;
-use crate::roofs::model::{Facet, Occluders};
+use crate::roofs::model::{Facet, Occluders, RoofModel};
+use crate::roofs::solids::{SolidTrace, close_above};
 
 /// What delineation and verification did.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -36,9 +39,33 @@ pub struct FacetTrace {
     pub register: Option<RegisterTrace>,
 }
 
+/// The steps from competing planes to closed buildings.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct RoofTrace {
+    /// Delineation and verification.
+    pub facets: FacetTrace,
+    /// Walls and ground.
+    pub solids: SolidTrace,
+}
+
+/// Delineates and verifies facets, and closes the buildings below them.
+pub fn reconstruct_roofs(
+    scene: &Scene,
+    competing: Option<&CompetingPlanes>,
+    ground: &Ground,
+    params: &RoofParams,
+) -> (RoofModel, RoofTrace) {
+    let (found, facets) = competing.map_or_else(Default::default, |competing| {
+        reconstruct_facets(scene, competing, ground, params)
+    });
+    reached(0.9);
+    let (model, solids) = close_above(&found, ground);
+    (model, RoofTrace { facets, solids })
+}
+
 /// Facets on the planes that compete (B99 4.3). Their `building` is still unset (0): facets that
 /// touch become buildings when walls are added.
-pub fn reconstruct_facets(
+fn reconstruct_facets(
     scene: &Scene,
     competing: &CompetingPlanes,
     ground: &Ground,

@@ -44,6 +44,7 @@ use self::partition::{PlanFacet, PlanPartition};
 use self::rings::ring_edges;
 use self::walls::{FaceKind, Shell, shell_of};
 use crate::base::ids::{BuildingId, FacetId};
+use crate::planes::terrain::Ground;
 use crate::roofs::model::{Building, Facet, RoofModel, Solid, SolidFace, Surface};
 
 /// Least height of a wall above the ground, metres. Assumption: a roof that meets the ground means
@@ -75,6 +76,13 @@ impl SolidTrace {
             ground_lowered: again.ground_lowered,
         }
     }
+}
+
+/// Closes the buildings below facets, down to the ground.
+pub(crate) fn close_above(facets: &[Facet], ground: &Ground) -> (RoofModel, SolidTrace) {
+    close_buildings(facets, |members| {
+        ground.below(members.iter().flat_map(|f| &f.outer))
+    })
 }
 
 /// Groups facets into buildings and closes them with walls and ground.

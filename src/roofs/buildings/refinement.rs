@@ -1,28 +1,18 @@
-//! Method "lines": from competing planes to closed buildings (B99 4.3, figure 24), which are then
-//! refined (B99 2).
+//! From closed buildings to refined ones, and what these say of the lines: the stage of refinement
+//! (B99 2).
 
 use serde::Serialize;
 
-use super::model_lines::VerifiedLines;
+use super::model_lines::{VerifiedLines, verify_lines};
 use super::parapets::{Parapet, below_parapets};
 use super::refine::{BuildingRefinement, RoofGap, cut_back_at_gaps, refine_roofs};
 use crate::base::execution::reached;
-use crate::base::params::RoofParams;
+use crate::base::params::Params;
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
 use crate::planes::terrain::Ground;
-use crate::roofs::facets::{CompetingPlanes, FacetTrace, reconstruct_facets};
 use crate::roofs::model::{Facet, RoofModel};
-use crate::roofs::solids::{SolidTrace, close_buildings};
-
-/// The steps from competing planes to closed buildings.
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct RoofTrace {
-    /// Delineation and verification.
-    pub facets: FacetTrace,
-    /// Walls and ground.
-    pub solids: SolidTrace,
-}
+use crate::roofs::solids::{SolidTrace, close_above};
 
 /// The steps from closed buildings to refined ones.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -51,41 +41,19 @@ pub struct UnrefinedFacets {
     pub sources: Vec<usize>,
 }
 
-/// Delineates and verifies facets, and closes the buildings below them.
-pub fn reconstruct_roofs(
-    scene: &Scene,
-    competing: Option<&CompetingPlanes>,
-    ground: &Ground,
-    params: &RoofParams,
-) -> (RoofModel, RoofTrace) {
-    let (found, facets) = competing.map_or_else(Default::default, |competing| {
-        reconstruct_facets(scene, competing, ground, params)
-    });
-    reached(0.9);
-    let (model, solids) = close_above(&found, ground);
-    (model, RoofTrace { facets, solids })
-}
-
-/// Closes the buildings below facets, down to the ground.
-pub(super) fn close_above(facets: &[Facet], ground: &Ground) -> (RoofModel, SolidTrace) {
-    close_buildings(facets, |members| {
-        ground.below(members.iter().flat_map(|f| &f.outer))
-    })
-}
-
-/// Cuts facets back at gaps, refines the buildings and closes them again.
+/// Cuts facets back at gaps, refines the buildings, closes them again, and weighs the lines in them.
 pub fn refine_buildings(
     scene: &Scene,
     lines: &[Line3d],
     model: &RoofModel,
     ground: &Ground,
-    params: &RoofParams,
+    params: &Params,
 ) -> (RoofModel, RefinementTrace) {
-    let (separated, gaps) = cut_back_at_gaps(scene, model, params);
+    let (separated, gaps) = cut_back_at_gaps(scene, model, &params.roof);
     // Refinement needs facets that share vertices, and moves them; so the solids are made again.
     let (delineated, solids) = close_above(&separated, ground);
     reached(0.2);
-    let (refined, buildings) = refine_roofs(scene, lines, &delineated, params);
+    let (refined, buildings) = refine_roofs(scene, lines, &delineated, &params.roof);
     reached(0.7);
     let (lowered, parapets) = below_parapets(scene, &refined);
     let (model, closed) = close_above(&lowered, ground);
@@ -99,7 +67,7 @@ pub fn refine_buildings(
         buildings,
         parapets,
         solids: solids.then(closed),
-        lines: VerifiedLines::default(),
+        lines: verify_lines(scene, lines, &model, ground, params),
     };
     (model, trace)
 }
