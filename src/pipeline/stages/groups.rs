@@ -8,7 +8,7 @@ use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
 use crate::planes::dense::CloudComparison;
-use crate::planes::grouping::ProposedPlane;
+use crate::planes::grouping::{GroupedPlanes, ProposedPlane};
 use crate::planes::objectspace::proposed_planes;
 use crate::roofs::facets::{
     CompetingPlanes, FacetInput, GroupingTrace, PlacedCloud, competing_planes,
@@ -82,14 +82,20 @@ impl StageDefinition for Groups {
             })
         };
         let cloud: Option<Arc<PlacedCloud>> = cloud.filter_map(placed).map(Arc::new).next();
+        let ground = required(&before.ground);
+        let grouped = GroupedPlanes::new(
+            &required(&before.lines).value,
+            &required(&before.half_planes).value,
+            params.method.pairs_lines(),
+            &proposals,
+            ground,
+            &params.roof,
+        );
         let evidence = FacetInput {
             segments: &required(&before.segments).value,
-            lines: &required(&before.lines).value,
-            half_planes: &required(&before.half_planes).value,
-            ground: required(&before.ground),
-            proposals: &proposals,
+            grouped: &grouped,
+            ground,
             cloud: cloud.as_ref(),
-            line_pairs: params.method.pairs_lines(),
         };
         let (competing, trace) = competing_planes(scene, &evidence, &params.roof)?;
         Ok((competing.map(Arc::new), trace).into())

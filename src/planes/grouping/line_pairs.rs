@@ -139,7 +139,7 @@ fn plane_of_pair(input: &GroupingInput, first: LineId, second: LineId) -> Option
 
 #[cfg(test)]
 mod tests {
-    use super::super::group_planes;
+    use super::super::grouped::group_planes;
     use super::super::neighbourhood::line_neighbours;
     use super::*;
     use crate::roofs::testing::line;
@@ -168,7 +168,7 @@ mod tests {
             neighbours: &neighbours,
             proposals: &[],
         };
-        group_planes(&input, &RoofParams::default())
+        group_planes(&input, true, &RoofParams::default())
     }
 
     #[test]

@@ -30,7 +30,7 @@ const SIGMA_THETA: f64 = 0.05;
 
 /// The half-planes that the sweep found, and behind them those propagated from a group next to
 /// their line. These have no views ([`HalfPlane::is_swept`]).
-pub(crate) fn with_propagated(
+pub(super) fn with_propagated(
     input: &GroupingInput,
     groups: &[PlaneGroup],
     ground: &Ground,
@@ -111,7 +111,7 @@ pub(crate) fn half_plane(line: LineId, side: Side, theta: f64, plane: Plane) -> 
 
 /// Groups of the propagated half-planes, as of swept ones: strips next to each other stay apart,
 /// pieces of one line come together.
-pub(crate) fn group_propagated(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGroup> {
+pub(super) fn group_propagated(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGroup> {
     let mut by_line = vec![Vec::new(); input.lines.len()];
     let mut free = vec![false; input.half_planes.len()];
     for (i, h) in input.half_planes.iter().enumerate() {
@@ -133,7 +133,7 @@ pub(crate) fn group_propagated(input: &GroupingInput, params: &RoofParams) -> Ve
 
 #[cfg(test)]
 mod tests {
-    use super::super::group_planes;
+    use super::super::grouped::group_planes;
     use super::super::neighbourhood::line_neighbours;
     use super::*;
     use crate::base::ids::ViewId;
@@ -180,7 +180,7 @@ mod tests {
             neighbours: &neighbours,
             proposals: &[],
         };
-        let groups = group_planes(&input, &params);
+        let groups = group_planes(&input, true, &params);
         let half_planes = with_propagated(&input, &groups, &Ground::level(0.0), &params);
         assert_eq!(half_planes[0], swept[0]);
         let propagated = &half_planes[1..];

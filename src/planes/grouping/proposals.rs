@@ -16,7 +16,7 @@ use crate::base::params::RoofParams;
 use crate::lines::lines3d::{Line3d, Side};
 
 /// Adds the proposed planes to the groups, those in the plane of a group to it.
-pub(crate) fn add_proposals(
+pub(super) fn add_proposals(
     input: &GroupingInput,
     groups: &mut Vec<PlaneGroup>,
     params: &RoofParams,
@@ -130,7 +130,7 @@ mod tests {
             proposals: &rectangles,
         };
         let params = RoofParams::default();
-        let mut groups = super::super::group_planes(&input, &params);
+        let mut groups = super::super::grouped::group_planes(&input, true, &params);
         assert_eq!(groups.len(), 1, "the plane of both eaves");
         add_proposals(&input, &mut groups, &params);
         let joined: Vec<&[ProposalOrigin]> = groups.iter().map(|g| &g.proposals[..]).collect();

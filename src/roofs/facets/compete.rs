@@ -1,8 +1,7 @@
-//! From half-planes to the planes that compete for the plan: the stage that orders B99 4.2.
+//! From groups to the planes that compete for the plan.
 //!
-//! lines and half-planes -> groups -> regions, border lines -> plan cells -> consistency of every
-//! plane over its region. All of it is kept for delineation, so that what only weighs it
-//! differently does not measure it again.
+//! groups -> regions, border lines -> plan cells -> consistency of every plane over its region. All
+//! of it is kept for delineation, so that what only weighs it differently does not measure it again.
 
 use std::sync::Arc;
 
@@ -20,11 +19,7 @@ use crate::base::geometry::{Plane, bounds};
 use crate::base::params::RoofParams;
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
-use crate::planes::grouping::{
-    GroupingInput, Member, PlanRegion, PlaneGroup, add_proposals, group_planes, group_propagated,
-    line_neighbours, with_propagated,
-};
-use crate::planes::half_planes::is_wall;
+use crate::planes::grouping::{PlanRegion, PlaneGroup};
 use crate::planes::hypotheses::{PlaneLine, plane_hypotheses};
 use crate::planes::photoconsistency::{
     ConsistencyMap, PlanGrid, ShiftableWindows, consistency_map_of_surface,
@@ -45,8 +40,8 @@ pub struct GroupingTrace {
     pub cells: usize,
 }
 
-/// The planes of groups of lines and half-planes (B99 4.2), with how the views agree on each over
-/// the cells of the plan; `None` where there is nothing to compete for.
+/// The planes of groups, with how the views agree on each over the cells of the plan; `None` where
+/// there is nothing to compete for.
 pub fn competing_planes(
     scene: &Scene,
     evidence: &FacetInput,
@@ -54,32 +49,12 @@ pub fn competing_planes(
 ) -> Sharded<(Option<CompetingPlanes>, GroupingTrace)> {
     let FacetInput {
         segments,
-        lines,
-        half_planes,
+        grouped,
         ground,
-        proposals,
         cloud,
-        line_pairs,
     } = *evidence;
-    let neighbours = line_neighbours(lines);
-    let input = GroupingInput {
-        lines,
-        half_planes,
-        neighbours: &neighbours,
-        proposals,
-    };
-    let mut groups: Vec<PlaneGroup> = match line_pairs {
-        true => group_planes(&input, params),
-        false => Vec::new(),
-    };
-    groups.retain(|g| !is_wall(&g.plane) && !lies_on_ground(&input, g, ground, params));
-    let half_planes = with_propagated(&input, &groups, ground, params);
-    let input = GroupingInput {
-        half_planes: &half_planes,
-        ..input
-    };
-    groups.extend(group_propagated(&input, params));
-    add_proposals(&input, &mut groups, params);
+    let (input, groups) = (grouped.input(), grouped.groups.clone());
+    let lines = input.lines;
     let regions: Vec<PlanRegion> = groups
         .iter()
         .map(|g| PlanRegion::new(&input, g, params))
@@ -162,18 +137,6 @@ pub fn competing_planes(
         cloud,
     };
     Ok((Some(competing), trace))
-}
-
-/// Are all lines of the group lower than any eave?
-fn lies_on_ground(
-    input: &GroupingInput,
-    group: &PlaneGroup,
-    ground: &Ground,
-    params: &RoofParams,
-) -> bool {
-    let mut members = group.members.iter();
-    let line = |m: &Member| &input.lines[m.line.index()].segment;
-    members.all(|m| ground.is_near(line(m), params.min_height_m))
 }
 
 /// The plan grid of the whole scene: samples a ground pixel apart, the regions of all groups as

@@ -6,9 +6,7 @@ use nalgebra::Point3;
 
 use crate::base::params::PointCloudParams;
 use crate::lines::lines2d::ImageSegment;
-use crate::lines::lines3d::Line3d;
-use crate::planes::grouping::ProposedPlane;
-use crate::planes::half_planes::HalfPlane;
+use crate::planes::grouping::GroupedPlanes;
 use crate::planes::terrain::Ground;
 
 /// A point cloud in the frame of the images.
@@ -29,17 +27,10 @@ pub struct PlacedCloud {
 pub struct FacetInput<'a> {
     /// Segments of each view, in the order of the views.
     pub segments: &'a [Vec<ImageSegment>],
-    /// 3D lines.
-    pub lines: &'a [Line3d],
-    /// Half-planes at them.
-    pub half_planes: &'a [HalfPlane],
+    /// Groups of lines, half-planes and proposed planes.
+    pub grouped: &'a GroupedPlanes<'a>,
     /// Where the ground is.
     pub ground: &'a Ground,
-    /// Planes that other sources propose.
-    pub proposals: &'a [ProposedPlane],
     /// A point cloud that belongs here.
     pub cloud: Option<&'a Arc<PlacedCloud>>,
-    /// Are half-planes and pairs of lines grouped beside them? Not where sets of coplanar lines
-    /// are all that there is.
-    pub line_pairs: bool,
 }

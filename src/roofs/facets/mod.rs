@@ -15,7 +15,7 @@
 //! verification      the tests that a facet must pass
 //! point_cloud       points of a cloud, in nats
 //! register          footprints of a register, in nats; each compared with the model
-//! compete           the stage of groups: orders B99 4.2
+//! compete           what is measured on the planes of groups
 //! reconstruct       the stage of facets: orders B99 4.3
 //! ```
 //!

@@ -239,7 +239,7 @@ mod tests {
     use super::*;
     use crate::base::geometry::Plane;
     use crate::base::ids::ProposalOrigin;
-    use crate::planes::grouping::ProposedPlane;
+    use crate::planes::grouping::{GroupedPlanes, ProposedPlane};
     use crate::planes::rendered_planes::{TexturedPlane, scene};
     use crate::roofs::facets::{FacetInput, competing_planes};
     use crate::roofs::testing::line;
@@ -281,16 +281,13 @@ mod tests {
             Point3::new(-4.0, -3.0, ROOF_Z),
             Point3::new(4.0, -3.0, ROOF_Z),
         );
+        let (lines, ground, params) = ([eave], Ground::level(0.0), RoofParams::default());
         let evidence = FacetInput {
             segments: &[],
-            lines: &[eave],
-            half_planes: &[],
-            ground: &Ground::level(0.0),
-            proposals,
+            grouped: &GroupedPlanes::new(&lines, &[], true, proposals, &ground, &params),
+            ground: &ground,
             cloud: None,
-            line_pairs: true,
         };
-        let params = RoofParams::default();
         let (competing, _) = competing_planes(&scene, &evidence, &params).unwrap();
         competing.map_or_else(Vec::new, |competing| {
             reconstruct_facets(&scene, &competing, evidence.ground, &params).0
