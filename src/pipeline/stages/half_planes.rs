@@ -3,7 +3,6 @@
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{is_any, required, to_bytes, untraced, warn_if};
 use crate::base::execution::Sharded;
-use crate::base::ids::LineId;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
 use crate::planes::half_planes::{HalfPlane, SweepTrace, sweep_half_planes};
@@ -20,7 +19,7 @@ impl StageDefinition for HalfPlanes {
     const TITLE: &'static str = "Half-planes";
     const SECTION: &'static str = "B99 4.1";
     const READS: &'static [&'static str] = &["sweep"];
-    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground, Stage::Coplanar];
+    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground];
     const SHARD_MAPS: &'static [&'static str] = &["sides"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
@@ -31,12 +30,7 @@ impl StageDefinition for HalfPlanes {
         } else {
             &[]
         };
-        let sets = before.coplanar.as_ref().map_or(&[][..], |c| &c.value);
-        let explained = |id: LineId, side| {
-            let line = &lines[id.index()];
-            sets.iter().any(|set| set.explains(id, line, side))
-        };
-        Ok(sweep_half_planes(scene, swept, ground, &explained, &params.sweep)?.into())
+        Ok(sweep_half_planes(scene, swept, ground, &params.sweep)?.into())
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {

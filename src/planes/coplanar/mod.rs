@@ -43,7 +43,7 @@ use crate::base::geometry::{Plane, mean_point};
 use crate::base::ids::{LineId, ProposalOrigin};
 use crate::base::params::{Lines3dParams, RoofParams};
 use crate::lines::lines2d::ImageSegment;
-use crate::lines::lines3d::{Line3d, Observation, Side};
+use crate::lines::lines3d::{Line3d, Observation};
 use crate::orienting::scene::Scene;
 use crate::planes::grouping::ProposedPlane;
 use crate::planes::photoconsistency::PlanGrid;
@@ -95,15 +95,6 @@ impl CoplanarSet {
             plane: self.plane,
             ring: self.polygon.clone(),
         }
-    }
-
-    /// Does it explain what lies on one side of a line, so that no half-plane needs to be sought
-    /// there (B99 5)?
-    pub fn explains(&self, id: LineId, line: &Line3d, side: Side) -> bool {
-        let start = line.segment.p0.xy();
-        let to = mean_point(&self.polygon).xy() - start;
-        let left = line.segment.direction().xy().perp(&to) > 0.0;
-        self.is_verified() && self.lines.contains(&id) && (side == Side::Left) == left
     }
 }
 

@@ -17,12 +17,11 @@ use crate::orienting::scene::Scene;
 use crate::planes::terrain::Ground;
 
 /// Half-planes of both sides of every line above the ground, in the order of the lines, left before
-/// right. Sides that are `explained` without one are not swept.
+/// right.
 pub fn sweep_half_planes(
     scene: &Scene,
     lines: &[Line3d],
     ground: &Ground,
-    explained: &(dyn Fn(LineId, Side) -> bool + Sync),
     params: &SweepParams,
 ) -> Sharded<(Vec<HalfPlane>, SweepTrace)> {
     let points = match lines {
@@ -37,10 +36,6 @@ pub fn sweep_half_planes(
         let line = LineId::from_index(i);
         if ground.is_near(&lines[i].segment, params.min_height_m) {
             counts.reject(line, side, SweepRejection::OnGround);
-            return (None, counts);
-        }
-        if explained(line, side) {
-            counts.reject(line, side, SweepRejection::Explained);
             return (None, counts);
         }
         let half_plane = sweep_side(scene, &points, line, &lines[i], side, params, &mut counts);
@@ -170,30 +165,6 @@ mod tests {
             .to_degrees()
     }
 
-    /// The sweep where nothing is explained.
-    fn swept(
-        scene: &Scene,
-        lines: &[Line3d],
-        ground: &Ground,
-        params: &SweepParams,
-    ) -> Sharded<(Vec<HalfPlane>, SweepTrace)> {
-        sweep_half_planes(scene, lines, ground, &|_, _| false, params)
-    }
-
-    #[test]
-    fn sides_that_coplanar_lines_explain_are_not_swept() {
-        let params = SweepParams::default();
-        let explained = |line, side| line == LineId(0) && side == Side::Left;
-        let (scene, ground) = (gable(), Ground::level(0.0));
-        let (found, trace) =
-            sweep_half_planes(&scene, &[ridge()], &ground, &explained, &params).unwrap();
-        assert_eq!(
-            found.iter().map(|h| h.side).collect::<Vec<_>>(),
-            [Side::Right]
-        );
-        assert_eq!(trace.sides[0].rejection, Some(SweepRejection::Explained));
-    }
-
     #[test]
     fn negative_theta_falls_away_from_the_line() {
         let height = |side, y| slope(&ridge(), side, -30.0, north).plane.z_at(0.0, y);
@@ -205,7 +176,7 @@ mod tests {
     #[test]
     fn both_sides_of_a_ridge_are_recovered() {
         let reversed = line(ridge().segment.p1, ridge().segment.p0);
-        let (found, trace) = swept(
+        let (found, trace) = sweep_half_planes(
             &gable(),
             &[ridge(), reversed],
             &Ground::level(0.0),
@@ -238,7 +209,7 @@ mod tests {
                 min_height_m,
                 ..SweepParams::default()
             };
-            swept(&gable(), &[ridge()], &Ground::level(ground), &params).unwrap()
+            sweep_half_planes(&gable(), &[ridge()], &Ground::level(ground), &params).unwrap()
         };
         // The ridge is 8 m high.
         let (found, trace) = sweep(7.0, 1.4);
@@ -259,7 +230,8 @@ mod tests {
             slope(&hip, Side::Right, -40.0, |x, y| y <= 0.6 * x),
         ]);
         let (found, _) =
-            swept(&scene, &[hip], &Ground::level(0.0), &SweepParams::default()).unwrap();
+            sweep_half_planes(&scene, &[hip], &Ground::level(0.0), &SweepParams::default())
+                .unwrap();
         assert!((theta_deg(&found, 0, Side::Left) - 25.0).abs() < 2.0);
         assert!((theta_deg(&found, 0, Side::Right) + 40.0).abs() < 2.0);
     }
@@ -268,7 +240,7 @@ mod tests {
     fn beyond_an_eave_there_is_no_half_plane() {
         // B99 figure 12: the roof ends at the line, the ground lies 8 m lower.
         let scene = scene(&[slope(&ridge(), Side::Left, 15.0, north), horizontal(0.0)]);
-        let (found, trace) = swept(
+        let (found, trace) = sweep_half_planes(
             &scene,
             &[ridge()],
             &Ground::level(0.0),
@@ -286,7 +258,7 @@ mod tests {
         let mut scene = gable();
         let covered = gable_covered().views.swap_remove(1);
         scene.views[1].gray = covered.gray;
-        let (found, trace) = swept(
+        let (found, trace) = sweep_half_planes(
             &scene,
             &[ridge()],
             &Ground::level(0.0),
@@ -374,7 +346,7 @@ mod tests {
         let up = line(Point3::new(0.0, 0.0, 8.0), Point3::new(0.0, 0.0, 12.0));
         let short = line(Point3::new(0.0, 0.0, 8.0), Point3::new(0.5, 0.0, 8.0));
         let outside = line(Point3::new(0.0, 0.0, 8.0), Point3::new(50.0, 0.0, 8.0));
-        let (found, trace) = swept(
+        let (found, trace) = sweep_half_planes(
             &scene,
             &[up, short, outside, ridge()],
             &Ground::level(0.0),

@@ -15,8 +15,6 @@ use crate::lines::lines3d::Side;
 pub enum SweepRejection {
     /// The line lies on the ground.
     OnGround,
-    /// A polygon of coplanar lines explains it (B99 5: "removing from consideration").
-    Explained,
     /// The line is vertical.
     NoFrame,
     /// No view shows the whole line at a sufficient length.
