@@ -61,6 +61,7 @@ impl CornerPlane {
             origin: ProposalOrigin::CornerPlane(index as u32),
             plane: self.plane,
             ring: self.polygon.clone(),
+            sides_on_edges: false,
         }
     }
 }

@@ -94,6 +94,7 @@ impl CoplanarSet {
             origin: ProposalOrigin::CoplanarSet(index as u32),
             plane: self.plane,
             ring: self.polygon.clone(),
+            sides_on_edges: true,
         }
     }
 }

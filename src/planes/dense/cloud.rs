@@ -94,6 +94,7 @@ impl CloudPlane {
             origin: ProposalOrigin::CloudPlane(index as u32),
             plane: self.plane,
             ring: self.ring.clone(),
+            sides_on_edges: false,
         }
     }
 }

@@ -78,6 +78,7 @@ impl DensePlane {
             origin: ProposalOrigin::DensePlane(index as u32),
             plane: self.plane,
             ring: self.ring.clone(),
+            sides_on_edges: false,
         }
     }
 }

@@ -16,6 +16,9 @@ pub struct ProposedPlane {
     pub plane: Plane,
     /// Corners, metres, counter-clockwise seen from above.
     pub ring: Vec<Point3<f64>>,
+    /// Are its sides edges of the images? They bound facets then; those of a box around what was
+    /// found only where no line lies in the plane.
+    pub sides_on_edges: bool,
 }
 
 impl ProposedPlane {

@@ -291,6 +291,7 @@ pub fn proposed_planes(trace: &RectangleTrace) -> Vec<ProposedPlane> {
             origin: ProposalOrigin::Rectangle(k as u32),
             plane: c.plane,
             ring: c.ring.clone(),
+            sides_on_edges: true,
         }
     });
     proposed.collect()

@@ -261,6 +261,7 @@ mod tests {
             origin: ProposalOrigin::Rectangle(index),
             plane: level(z),
             ring: corners.map(|(x, y)| Point3::new(x, y, z)).to_vec(),
+            sides_on_edges: true,
         }
     }
 

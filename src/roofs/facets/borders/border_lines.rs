@@ -18,7 +18,6 @@ use nalgebra::{Point2, Vector2};
 use super::border::{Border, BorderKind};
 use super::extent::extent_lines;
 use crate::base::geometry::Segment3;
-use crate::base::ids::ProposalOrigin;
 use crate::base::params::RoofParams;
 use crate::base::plan_index::PlanIndex;
 use crate::lines::lines3d::ThetaFrame;
@@ -263,20 +262,13 @@ fn closing_lines(
     found
 }
 
-/// The sides of the rectangles, which are where crossing image lines end the plane, of coplanar
-/// lines without a half-plane, and of those planes of dense matching that have no line.
+/// The sides of proposed planes that are edges of the images, and of those others in whose plane no
+/// line lies.
 fn proposed_sides(input: &GroupingInput, hypotheses: &[PlaneHypothesis]) -> Vec<Border> {
     let proposed = hypotheses.iter().flat_map(|h| {
         let has_lines = !h.group.members.is_empty();
-        let is_swept = !h.group.half_planes().is_empty();
         let proposed = h.group.proposed(input);
-        proposed.filter(move |p| match p.origin {
-            ProposalOrigin::Rectangle(_) => true,
-            ProposalOrigin::CoplanarSet(_) => !is_swept,
-            ProposalOrigin::CornerPlane(_)
-            | ProposalOrigin::DensePlane(_)
-            | ProposalOrigin::CloudPlane(_) => !has_lines,
-        })
+        proposed.filter(move |p| p.sides_on_edges || !has_lines)
     });
     let sides = proposed.flat_map(|r| {
         r.sides().map(|[a, b]| Border {
