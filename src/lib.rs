@@ -46,10 +46,8 @@
 //!    -> lines3d                  3D lines with covariance                     B99 3.2, figure 4
 //!    -> adjustment               single views adjusted to these, and matched again
 //!    -> terrain                  the ground
-//!    -> coplanar                 sets of coplanar lines and their polygons     B99 2, 5
-//!    -> adjacency                corners with edges and regions; their planes  B99 2
-//!    -> planes                   Sim(theta), half-planes, plane hypotheses    B99 4.1, 4.2
-//!    -> dense                    planes from dense matching                   B99 2
+//!    -> planes                   sources: half-planes by Sim(theta), and others   B99 4.1, 2
+//!                                groups and plane hypotheses                  B99 4.2
 //!    -> facets                   borders, labelling, verification             B99 4.3
 //!    or, from the images to the roofs in one go
 //!    -> objectspace              regions, directions, clusters, rectangles    W96 3.3 - 3.6

@@ -34,8 +34,7 @@ from timed_runs import in_turns, known, median_of, ratio_of, reconstruct, run, s
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 KEPT = ROOT / 'target' / 'bench'
 PARTS = ['pairs', 'peers', 'growth']
-# What finds planes besides lines, and may be left out.
-LINES_ALONE = {source: {'enabled': False} for source in ('dense', 'coplanar', 'adjacency')}
+LINES_ALONE = {'sources': ['half_planes', 'line_pairs']}
 IN_GREY = {'segments': {'colors': {'detect': False}}}
 # Each as pip knows it. OpenCV last: LIMAP brings an OpenCV that may lack EDLines.
 PEERS = ['pylimap', 'opencv-contrib-python-headless']

@@ -3,7 +3,7 @@
 //   taskset -c 0 node tests/times.mjs SCENE [--method lines|rectangles|combined|coplanar|adjacency] [--package FOLDER]
 //
 // Prints Markdown. The sweep's own time is what the half-planes stage takes less when nothing is high enough to be swept: finding the
-// ground and the points of interest remain.
+// points of interest remains.
 
 import { basename, resolve } from "node:path";
 import { parseArgs } from "node:util";

@@ -161,11 +161,10 @@ fn both_methods_share_their_planes() {
             let shard = |helper: &mut Session| helper.run_shard(stage, "planes", 0, 1, &silent);
             assert!(shard(helper).unwrap().is_empty(), "nothing is known yet");
             let earlier = [
-                "rectangles",
                 "segments",
                 "lines",
-                "coplanar",
-                "adjacency",
+                "ground",
+                "rectangles",
                 "halfplanes",
                 "dense",
             ];

@@ -38,19 +38,20 @@ id! {
     BuildingId,
 }
 
-/// What proposed a plane, beside the half-planes and lines of B99.
+/// Which source proposed a plane, and the index in what its stage found; half-planes and lines are
+/// named by their own ids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum ProposalOrigin {
-    /// A candidate of W96: index into the candidates of [`crate::planes::objectspace::RectangleTrace`].
+    /// A candidate of W96.
     Rectangle(u32),
-    /// A plane of dense matching: index into the list of [`crate::planes::dense::DensePlane`].
+    /// A plane of dense matching.
     DensePlane(u32),
-    /// A set of coplanar lines: index into the list of [`crate::planes::coplanar::CoplanarSet`].
+    /// A set of coplanar lines.
     CoplanarSet(u32),
-    /// A plane of corners: index into the list of [`crate::planes::adjacency::CornerPlane`].
+    /// A plane of corners.
     CornerPlane(u32),
-    /// A plane of a point cloud: index into the list of [`crate::planes::dense::CloudComparison`].
+    /// A plane of a point cloud.
     CloudPlane(u32),
 }

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
+use ridgeline::Method;
 
 /// Three or more calibrated aerial photographs in, textured 3D roof models out.
 #[derive(Parser)]
@@ -172,8 +174,8 @@ pub(super) struct ReconstructArgs {
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// How roofs are found; by default as the parameters say: lines.
-    #[arg(long, value_enum)]
-    pub method: Option<MethodArgument>,
+    #[arg(long, value_parser = method_parser())]
+    pub method: Option<Method>,
     /// Reconstruct the region tile by tile, each of M metres or so (60 or more), into one model;
     /// without --roi the area that three or more views show. A whole flight of more than 12 views
     /// goes this way by itself.
@@ -198,8 +200,8 @@ pub(super) struct PlanArgs {
     #[arg(long, value_name = "PLAN")]
     pub out: PathBuf,
     /// How roofs are found; by default as the parameters say: lines.
-    #[arg(long, value_enum)]
-    pub method: Option<MethodArgument>,
+    #[arg(long, value_parser = method_parser())]
+    pub method: Option<Method>,
 }
 
 /// The arguments of `tile`.
@@ -225,30 +227,12 @@ pub(super) struct JoinArgs {
     pub out: PathBuf,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub(super) enum MethodArgument {
-    /// Lines matched over the views, and half-planes at them (Baillard et al. 1999).
-    Lines,
-    /// Regions, and planes between parallel lines in object space (Wiman and Axelsson 1996).
-    Rectangles,
-    /// Both: their lines and planes compete for one model. Regions take most of its time.
-    Combined,
-    /// Sets of coplanar lines and their polygons (Baillard et al. 1999, section 2).
-    Coplanar,
-    /// Corners with their edges and regions, matched as wholes (Baillard et al. 1999, section 2).
-    Adjacency,
-}
-
-impl From<MethodArgument> for ridgeline::base::params::Method {
-    fn from(method: MethodArgument) -> Self {
-        match method {
-            MethodArgument::Lines => Self::Lines,
-            MethodArgument::Rectangles => Self::Rectangles,
-            MethodArgument::Combined => Self::Combined,
-            MethodArgument::Coplanar => Self::Coplanar,
-            MethodArgument::Adjacency => Self::Adjacency,
-        }
-    }
+/// The methods by their names.
+fn method_parser() -> impl TypedValueParser<Value = Method> {
+    let named = |method: Method| PossibleValue::new(method.name()).help(method.summary());
+    let of_name = |name: String| Method::ALL.into_iter().find(|m| m.name() == name);
+    PossibleValuesParser::new(Method::ALL.map(named))
+        .map(move |name| of_name(name).expect("one of the names above"))
 }
 
 fn parse_finite(text: &str) -> Result<f64, String> {

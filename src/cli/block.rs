@@ -24,7 +24,7 @@ pub(super) fn plan(args: &PlanArgs) -> Result<(), Failure> {
         seen,
     } = input::open(&args.input, params, &args.out)?;
     if let Some(method) = args.method {
-        params.method = method.into();
+        params.choose(method);
     }
     let InputArgs {
         terrain,

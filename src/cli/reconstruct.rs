@@ -39,7 +39,7 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     } = open(&args.input, params, &args.out)?;
     let refuse = |e: ridgeline::Error| refusal(&e, &seen);
     if let Some(method) = args.method {
-        params.method = method.into();
+        params.choose(method);
     }
     if let Some(tile_m) = args.tile {
         let area = Area::plan(&mut input, &options, None, &params, tile_m);

@@ -8,8 +8,8 @@ impl Run {
     /// Puts the cameras where the run begins: as stated, with the shifts of single views taken
     /// back where views are to be adjusted.
     pub(super) fn restore_cameras(&mut self) {
-        let is_adjusted = self.params.adjustment.enabled
-            && Stage::of(self.params.method).contains(&Stage::Adjustment);
+        let is_adjusted =
+            self.params.adjustment.enabled && self.stages().contains(&Stage::Adjustment);
         let survey = &mut self.scene.survey;
         survey.adjustments.clear();
         survey.adjustment_rounds = 0;

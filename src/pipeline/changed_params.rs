@@ -83,9 +83,9 @@ fn new_parameters_of_one_method_keep_what_the_other_found_before() {
     params.objectspace.planes.min_area_m2 = 5.0;
     run.set_params(params.clone());
     assert!(run.has(Stage::Ground) && !run.has(Stage::Rectangles));
-    params.method = Method::Lines;
+    params.choose(Method::Lines);
     run.set_params(params.clone());
-    assert!(run.summaries().is_empty(), "another method");
+    assert!(run.summaries().is_empty(), "other sources");
     run.step(Stage::Segments, &silent());
     params.objectspace.oris.vector_bits = 20.0;
     run.set_params(params);

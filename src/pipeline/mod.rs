@@ -2,10 +2,9 @@
 //! tests all run a reconstruction through [`Run`].
 //!
 //! ```text
-//! B99:  segments -> matches -> adjustment -> lines -> ground -> coplanar -> adjacency
-//!                      ^           |   -> halfplanes -> dense -> groups -> facets
-//!                      +-----------+   -> refinement -> corrections -> model
-//!                   where views moved
+//! B99:  segments -> matches -> adjustment -> lines -> ground -> sources of planes -> groups
+//!                      ^           |   -> facets -> refinement -> corrections -> model
+//!                      +-----------+ where views moved
 //! W96:  regions -> directions -> clusters -> ground -> rectangles -> corrections -> model
 //! both: segments to adjustment, those of W96 up to the clusters, lines and ground of both, then
 //!       the planes of each
@@ -41,7 +40,7 @@ use serde_json::Value;
 use crate::base::evidence::{Candidates, Evidence, JudgedLine};
 use crate::base::execution::{Listener, progress};
 use crate::base::execution::{MergedShards, Sharded, run_merged};
-use crate::base::params::{Method, Params};
+use crate::base::params::Params;
 use crate::lines::lines2d::ImageSegment;
 use crate::lines::lines3d::{Line3d, LineOutcome};
 use crate::orienting::scene::Scene;
@@ -54,8 +53,7 @@ use crate::results::texture::TexturedModel;
 use crate::roofs::model::{BuildingWalls, RoofModel};
 
 impl Results {
-    /// The roof model of whichever method ran; of both, that to which both came. With what was
-    /// corrected by hand, once that stage has run.
+    /// The roof model, with what was corrected by hand, once that stage has run.
     pub fn roof_model(&self) -> Option<&RoofModel> {
         let corrected = self.corrections.as_ref().map(|r| &r.value);
         corrected.or_else(|| self.found_model())
@@ -106,6 +104,27 @@ impl Results {
             surfaces: (self.dense.as_ref())
                 .map_or_else(Vec::new, |found| found.trace.judged(&found.value)),
         }
+    }
+
+    /// The segments of all views and the 3D lines that go into the files: those that were matched
+    /// over the views, those of regions where none were.
+    pub fn segments_and_lines(
+        &self,
+        scene: &Scene,
+    ) -> Option<(Cow<'_, [Vec<ImageSegment>]>, Cow<'_, [Line3d]>)> {
+        if let (Some(segments), Some(lines)) = (&self.segments, &self.lines) {
+            // Without facets nothing contradicts them.
+            let all = self
+                .all_lines()
+                .map_or(Cow::Borrowed(&lines.value[..]), Cow::Owned);
+            return Some((Cow::Borrowed(&segments.value), all));
+        }
+        let (regions, clusters) = (
+            &self.regions.as_ref()?.value,
+            &self.clusters.as_ref()?.value,
+        );
+        let lines = world_lines(scene, regions, clusters);
+        Some((Cow::Owned(image_segments(regions)), Cow::Owned(lines)))
     }
 
     /// The 3D lines of B99, by their ids (matched ones, then those adopted of W96), and then the
@@ -170,14 +189,14 @@ impl Run {
         &self.summaries
     }
 
-    /// The stages of the chosen method, in their order.
+    /// The stages that the chosen sources of planes need, in their order.
     pub fn stages(&self) -> Vec<Stage> {
-        Stage::of(self.params.method)
+        Stage::of(self.params.sources())
     }
 
     /// Changes the parameters and drops the results that they would change.
     pub fn set_params(&mut self, params: Params) {
-        let first = if params.method == self.params.method {
+        let first = if params.sources() == self.params.sources() {
             let (old, new) = (as_json(&self.params), as_json(&params));
             let reads_change = |stage: &Stage| {
                 let mut paths = stage.reads().iter();
@@ -185,7 +204,7 @@ impl Run {
             };
             self.stages().into_iter().find(reads_change)
         } else {
-            // Another method leaves nothing of the results.
+            // Other sources leave nothing of the results.
             Stage::ALL.first().copied()
         };
         self.params = params;
@@ -297,27 +316,14 @@ impl Run {
         let model = r.roof_model()?;
         let last = r.model.as_ref()?;
         let (walls, textured) = (&last.walls[..], &last.value);
-        Some(match self.params.method {
-            Method::Lines | Method::Combined | Method::Coplanar | Method::Adjacency => Outputs {
-                segments: Cow::Borrowed(&r.segments.as_ref()?.value),
-                lines: Cow::Owned(r.all_lines()?),
-                half_planes: &r.half_planes.as_ref()?.value,
-                model,
-                walls,
-                textured,
-            },
-            Method::Rectangles => {
-                let lines = &r.regions.as_ref()?.value;
-                let found = &r.clusters.as_ref()?.value;
-                Outputs {
-                    segments: Cow::Owned(image_segments(lines)),
-                    lines: Cow::Owned(world_lines(&self.scene, lines, found)),
-                    half_planes: &[],
-                    model,
-                    walls,
-                    textured,
-                }
-            }
+        let (segments, lines) = r.segments_and_lines(&self.scene)?;
+        Some(Outputs {
+            segments,
+            lines,
+            half_planes: r.half_planes.as_ref().map_or(&[], |found| &found.value),
+            model,
+            walls,
+            textured,
         })
     }
 
@@ -368,6 +374,7 @@ fn at_path<'a>(params: &'a Value, path: &str) -> Option<&'a Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::params::Source;
 
     /// Does one path lead to the other or to a part of it?
     fn leads_to(path: &str, to: &str) -> bool {
@@ -385,7 +392,9 @@ mod tests {
             assert!(at_path(&params, path).is_some(), "{path}");
         }
         let groups = params.as_object().unwrap().iter();
-        for (name, group) in groups.filter(|(name, _)| *name != "method") {
+        // Which stages there are is no stage's parameter.
+        for (name, group) in groups.filter(|(name, _)| !["method", "sources"].contains(&&name[..]))
+        {
             let paths: Vec<String> = match group.as_object() {
                 Some(fields) => fields
                     .keys()
@@ -403,9 +412,12 @@ mod tests {
     #[test]
     fn stages_need_what_runs_before_them() {
         for stage in Stage::ALL {
-            for method in Method::ALL {
-                assert!(stage.needs(method).all(|needed| needed < *stage));
-            }
+            assert!(
+                stage
+                    .needs(&Source::ALL)
+                    .iter()
+                    .all(|needed| needed < stage)
+            );
             assert_eq!(Stage::from_name(stage.name()), Some(*stage));
         }
     }

@@ -24,7 +24,10 @@ fn page_table() -> String {
 
 fn row(stage: Stage) -> String {
     let row = stage.row();
-    let methods: Vec<&str> = row.methods.iter().map(|method| method.name()).collect();
+    let has = |method: &Method| Stage::of(method.sources()).contains(&stage);
+    let methods: Vec<&str> = (Method::ALL.into_iter().filter(has))
+        .map(Method::name)
+        .collect();
     let fields: [(&str, &dyn Debug); 5] = [
         ("name", &stage.name()),
         ("title", &stage.title()),

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{PackedView, Run, Stage};
 use crate::base::execution::progress;
-use crate::base::params::{Method, Params};
+use crate::base::params::{Params, Source};
 use crate::orienting::scene::Scene;
 use crate::roofs::model::RoofModel;
 
@@ -78,10 +78,11 @@ fn reduction(scene: &Scene) -> Option<usize> {
 /// pixels as in pixels.
 fn preliminary_params(params: &Params) -> Params {
     let mut params = params.clone();
-    if params.method == Method::Combined {
-        params.method = Method::Lines;
+    let quick = params.sources().iter().copied().filter(|s| s.is_quick());
+    let quick: Vec<Source> = quick.collect();
+    if !quick.is_empty() {
+        params.sources = quick;
     }
-    params.dense.enabled = false;
     params.roof.refine.refine = false;
     params.corrections.clear();
     params

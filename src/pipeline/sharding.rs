@@ -109,8 +109,8 @@ impl Run {
     pub fn hand_over(&self, stage: Stage) -> Vec<u8> {
         let packed = || (stage.row().pack)(&self.results);
         let is_read = self.stages().into_iter().any(|later| {
-            let mut needs = later.needs(self.params.method);
-            !later.shard_maps().is_empty() && needs.any(|needed| needed == stage)
+            let needs = later.needs(self.params.sources());
+            !later.shard_maps().is_empty() && needs.contains(&stage)
         });
         is_read.then(packed).flatten().unwrap_or_default()
     }
@@ -133,8 +133,8 @@ impl Run {
         progress: &Listener,
     ) -> Vec<u8> {
         let task = ShardTask::new(stage.shard_maps(), map, index, of);
-        let mut needs = stage.needs(self.params.method);
-        let is_ready = needs.all(|needed| (needed.row().is_found)(&self.results));
+        let needs = stage.needs(self.params.sources());
+        let is_ready = (needs.iter()).all(|needed| (needed.row().is_found)(&self.results));
         let Some(task) = task.filter(|_| is_ready) else {
             return Vec::new();
         };

@@ -17,14 +17,13 @@ use super::vacancy::{self, ASKED_AFTER};
 use crate::base::error::{Error, Result};
 use crate::base::execution::Listener;
 use crate::base::ids::ViewId;
-use crate::base::params::{Method, Params};
+use crate::base::params::Params;
 use crate::orienting::orientation::{FileSource, InputFile};
 use crate::orienting::scene::{Scene, View};
 use crate::orienting::scene_loader::{
     LoadOptions, PlannedScene, ShownArea, files_of_settling, settled, whole_views,
 };
 use crate::pipeline::{Run, Stage, counted};
-use crate::planes::objectspace::{image_segments, world_lines};
 use crate::results::texture::texture_model;
 use crate::roofs::model::RoofModel;
 use crate::roofs::walls::place_walls_of;
@@ -358,16 +357,17 @@ fn part(
     let stages: Vec<Stage> = (run.stages().into_iter())
         .filter(|&stage| stage != Stage::Model)
         .collect();
+    let asked_before = stages.partition_point(|&stage| stage <= ASKED_AFTER);
     let mut is_vacant = false;
     for (i, &stage) in stages.iter().enumerate() {
+        is_vacant = i == asked_before && vacancy::is_vacant(&run, cell);
+        if is_vacant {
+            break;
+        }
         let (done, all) = (i as f64, stages.len() as f64);
         let of_cell = Listener::clone(progress);
         let listener: Listener = Arc::new(move |fraction| of_cell((done + fraction) / all));
         run.step(stage, &listener);
-        is_vacant = stage == ASKED_AFTER && vacancy::is_vacant(&run, cell);
-        if is_vacant {
-            break;
-        }
     }
     let (scene, results) = (run.scene(), run.results());
     let found = "the stages have run";
@@ -383,30 +383,18 @@ fn part(
         .map(|(walls, (&b, own))| walls_of(&walls, &all.buildings[b], own, &Vector3::zeros()))
         .collect();
     let (textured, _) = texture_model(scene, &model, &params.texture);
-    let (segments, lines, half_planes) = match params.method {
-        Method::Lines | Method::Combined | Method::Coplanar | Method::Adjacency => (
-            results.segments.as_ref().expect(found).value.clone(),
-            // Without facets nothing contradicts them.
-            (results.all_lines()).unwrap_or_else(|| {
-                let lines = results.lines.as_ref();
-                lines.expect(found).value.clone()
-            }),
-            results.half_planes.as_ref().expect(found).value.clone(),
-        ),
-        Method::Rectangles => {
-            let lines = &results.regions.as_ref().expect(found).value;
-            let clusters = &results.clusters.as_ref().expect(found).value;
-            let segments = image_segments(lines);
-            (segments, world_lines(scene, lines, clusters), Vec::new())
-        }
-    };
+    let (segments, lines) = results.segments_and_lines(scene).expect(found);
+    let half_planes = results
+        .half_planes
+        .as_ref()
+        .map(|found| found.value.clone());
     let part = CellPart {
         cell: *cell,
         origin: scene.origin,
         views,
-        segments,
-        lines,
-        half_planes,
+        segments: segments.into_owned(),
+        lines: lines.into_owned(),
+        half_planes: half_planes.unwrap_or_default(),
         candidates: results.candidates(),
         model,
         walls,

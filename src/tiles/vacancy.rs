@@ -19,7 +19,7 @@ use nalgebra::Point2;
 use super::tile::{Cell, SLACK_M};
 use crate::base::geometry::Segment3;
 use crate::base::math::{larger, smaller};
-use crate::base::params::{Method, RoofParams};
+use crate::base::params::RoofParams;
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
 use crate::pipeline::{Run, Stage};
@@ -29,25 +29,24 @@ use crate::planes::terrain::Ground;
 /// The stage after which it is asked: the last one that takes little time.
 pub(super) const ASKED_AFTER: Stage = Stage::HalfPlanes;
 
-/// May no building of a cell be found by the stages behind [`ASKED_AFTER`]? Never of methods that
-/// have planes without lines: `rectangles` and `combined`.
+/// May no building of a cell be found by the stages behind [`ASKED_AFTER`]? Never where a source has
+/// planes without matched lines.
 pub(super) fn is_vacant(run: &Run, cell: &Cell) -> bool {
     let (scene, results) = (run.scene(), run.results());
     let [x, y] = [scene.origin.x, scene.origin.y];
     let [x0, y0, x1, y1] = cell.core;
     let low = Point2::new(x0 - x - SLACK_M, y0 - y - SLACK_M);
     let high = Point2::new(x1 - x + SLACK_M, y1 - y + SLACK_M);
-    match run.params().method {
-        Method::Lines | Method::Coplanar | Method::Adjacency => {
-            let (Some(lines), Some(ground)) = (&results.lines, &results.ground) else {
-                return false;
-            };
-            let (lines, roof) = (&lines.value, &run.params().roof);
-            is_nothing_known(scene, [low, high])
-                && is_nothing_high(scene, lines, ground, [low, high], roof)
-        }
-        Method::Rectangles | Method::Combined => false,
-    }
+    let (Some(lines), Some(ground)) = (&results.lines, &results.ground) else {
+        return false;
+    };
+    let (lines, roof) = (&lines.value, &run.params().roof);
+    run.params()
+        .sources()
+        .iter()
+        .all(|source| source.is_of_lines())
+        && is_nothing_known(scene, [low, high])
+        && is_nothing_high(scene, lines, ground, [low, high], roof)
 }
 
 /// Neither a footprint there, nor points of roofs anywhere.
@@ -95,7 +94,7 @@ mod tests {
     use super::*;
     use crate::base::execution::progress::silent;
     use crate::base::geometry::Plane;
-    use crate::base::params::Params;
+    use crate::base::params::{Method, Params};
     use crate::orienting::orientation::InputFile;
     use crate::orienting::scene_loader::LoadOptions;
     use crate::orienting::synthetic::{gable_scene, shed_scene, to_files};

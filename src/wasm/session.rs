@@ -130,10 +130,10 @@ impl Session {
         Self::default()
     }
 
-    /// The names of the stages of the method that the parameters choose, in order.
+    /// The names of the stages that the sources of planes need, in order.
     #[wasm_bindgen(js_name = chosenStages)]
     pub fn chosen_stages(&self) -> Vec<String> {
-        Stage::of(self.params.method)
+        Stage::of(self.params.sources())
             .iter()
             .map(|s| s.name().to_owned())
             .collect()

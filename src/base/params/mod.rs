@@ -2,29 +2,25 @@
 //!
 //! Each field quotes its section; where the paper gives no value, "Assumption:" gives the reason.
 
-mod adjacency;
 mod adjustment;
 mod buildings;
-mod coplanar;
 mod corrections;
-mod dense;
 mod lines;
 mod objectspace;
 mod planes;
 mod point_cloud;
 mod register;
+mod sources;
 
-pub use self::adjacency::*;
 pub use self::adjustment::*;
 pub use self::buildings::*;
-pub use self::coplanar::*;
 pub use self::corrections::*;
-pub use self::dense::*;
 pub use self::lines::*;
 pub use self::objectspace::*;
 pub use self::planes::*;
 pub use self::point_cloud::*;
 pub use self::register::*;
+pub use self::sources::*;
 
 use serde::{Deserialize, Serialize};
 
@@ -33,8 +29,10 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Params {
-    /// Which of the methods finds the roofs.
+    /// A name for a set of sources of planes.
     pub method: Method,
+    /// The sources of planes; those of the method where none is given.
+    pub sources: Vec<Source>,
     /// Image segments.
     pub segments: SegmentParams,
     /// Line matching.
@@ -43,14 +41,8 @@ pub struct Params {
     pub adjustment: AdjustmentParams,
     /// 3D lines.
     pub lines3d: Lines3dParams,
-    /// Coplanar grouping.
-    pub coplanar: CoplanarParams,
-    /// Feature adjacency graphs.
-    pub adjacency: AdjacencyParams,
     /// Half-plane sweep.
     pub sweep: SweepParams,
-    /// Dense matching.
-    pub dense: DenseParams,
     /// A point cloud that is known beforehand.
     pub point_cloud: PointCloudParams,
     /// Grouping, delineation, verification, conflicts.
@@ -63,24 +55,6 @@ pub struct Params {
     pub texture: TextureParams,
 }
 
-/// How roofs are found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-#[serde(rename_all = "lowercase")]
-pub enum Method {
-    /// Lines matched over the views, and half-planes at them (B99).
-    #[default]
-    Lines,
-    /// Regions, and planes between parallel lines in object space (W96).
-    Rectangles,
-    /// Lines and planes of both compete for one model.
-    Combined,
-    /// Sets of coplanar lines and their polygons (B99 2: Leuven).
-    Coplanar,
-    /// Corners with their edges and regions, matched as wholes (B99 2: Bonn).
-    Adjacency,
-}
-
 impl Params {
     /// From JSON; what it leaves out is as by default.
     ///
@@ -89,32 +63,18 @@ impl Params {
     pub fn from_json(text: &str) -> Result<Self, impl std::error::Error + use<>> {
         crate::base::json::read(text)
     }
-}
 
-impl Method {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Lines,
-        Self::Rectangles,
-        Self::Combined,
-        Self::Coplanar,
-        Self::Adjacency,
-    ];
-
-    /// Are lines swept and grouped in pairs? Not where another source of planes is all that there
-    /// is.
-    pub fn pairs_lines(self) -> bool {
-        !matches!(self, Self::Coplanar | Self::Adjacency)
+    /// The sources that propose planes.
+    pub fn sources(&self) -> &[Source] {
+        match &self.sources[..] {
+            [] => self.method.sources(),
+            given => given,
+        }
     }
 
-    /// The name in files, on the command line and on the page.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Lines => "lines",
-            Self::Rectangles => "rectangles",
-            Self::Combined => "combined",
-            Self::Coplanar => "coplanar",
-            Self::Adjacency => "adjacency",
-        }
+    /// Takes the sources of a method.
+    pub fn choose(&mut self, method: Method) {
+        self.method = method;
+        self.sources.clear();
     }
 }

@@ -7,8 +7,6 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PointCloudParams {
-    /// Whether points on roofs propose planes and count for them.
-    pub enabled: bool,
     /// Probability that a cloud that is given belongs to the place, before the images are compared
     /// with it. Assumption: of ten that are given, one is of the neighbouring tile or another year.
     pub belongs: f64,
@@ -50,7 +48,6 @@ pub struct PointCloudParams {
 impl Default for PointCloudParams {
     fn default() -> Self {
         Self {
-            enabled: true,
             belongs: 0.9,
             place_sigma_m: 0.3,
             off_share: 0.2,

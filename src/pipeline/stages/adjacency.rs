@@ -3,9 +3,10 @@
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{is_any, required, to_bytes, untraced, warn_if};
 use crate::base::execution::Sharded;
-use crate::base::params::{Method, Params};
+use crate::base::params::Params;
 use crate::orienting::scene::Scene;
 use crate::planes::adjacency::{AdjacencyTrace, CornerPlane, corner_planes};
+use crate::planes::grouping::ProposedPlane;
 
 /// Planes of corners, verified or not; the graphs and the corners are in the trace.
 pub(super) type Found = Outcome<Vec<CornerPlane>, AdjacencyTrace>;
@@ -18,13 +19,15 @@ impl StageDefinition for Adjacency {
     const NAME: &'static str = "adjacency";
     const TITLE: &'static str = "Adjacency graphs";
     const SECTION: &'static str = "B99 2";
-    const READS: &'static [&'static str] = &["adjacency", "roof.border_nats_per_m"];
+    const READS: &'static [&'static str] = &["roof.border_nats_per_m"];
     const NEEDS: &'static [Stage] = &[Stage::Segments, Stage::Lines];
 
+    const PROPOSALS: Option<fn(&Found) -> Vec<ProposedPlane>> = Some(|found| {
+        let verified = (found.value.iter().enumerate()).filter(|(_, plane)| plane.is_verified());
+        verified.map(|(i, plane)| plane.proposed(i)).collect()
+    });
+
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
-        if !params.adjacency.enabled && params.method != Method::Adjacency {
-            return Ok((Vec::new(), AdjacencyTrace::default()).into());
-        }
         let segments = &required(&before.segments).value;
         let lines = &required(&before.lines).value;
         Ok(corner_planes(scene, lines, segments, &params.roof).into())

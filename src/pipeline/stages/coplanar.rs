@@ -3,9 +3,10 @@
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{is_any, required, to_bytes, untraced, warn_if};
 use crate::base::execution::Sharded;
-use crate::base::params::{Method, Params};
+use crate::base::params::Params;
 use crate::orienting::scene::Scene;
 use crate::planes::coplanar::{CoplanarSet, CoplanarTrace, coplanar_sets};
+use crate::planes::grouping::ProposedPlane;
 
 /// Sets of coplanar lines with their polygons, verified or not.
 pub(super) type Found = Outcome<Vec<CoplanarSet>, CoplanarTrace>;
@@ -18,13 +19,15 @@ impl StageDefinition for Coplanar {
     const NAME: &'static str = "coplanar";
     const TITLE: &'static str = "Coplanar sets";
     const SECTION: &'static str = "B99 2, 5";
-    const READS: &'static [&'static str] = &["coplanar", "lines3d", "roof.border_nats_per_m"];
+    const READS: &'static [&'static str] = &["lines3d", "roof.border_nats_per_m"];
     const NEEDS: &'static [Stage] = &[Stage::Segments, Stage::Lines];
 
+    const PROPOSALS: Option<fn(&Found) -> Vec<ProposedPlane>> = Some(|found| {
+        let verified = (found.value.iter().enumerate()).filter(|(_, set)| set.is_verified());
+        verified.map(|(i, set)| set.proposed(i)).collect()
+    });
+
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
-        if !params.coplanar.enabled && params.method != Method::Coplanar {
-            return Ok((Vec::new(), CoplanarTrace::default()).into());
-        }
         let segments = &required(&before.segments).value;
         let lines = &required(&before.lines).value;
         Ok(coplanar_sets(scene, lines, segments, &params.lines3d, &params.roof).into())

@@ -3,9 +3,10 @@
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{from_bytes, required, to_bytes};
 use crate::base::execution::Sharded;
-use crate::base::params::Params;
+use crate::base::params::{Params, Source};
 use crate::orienting::scene::Scene;
 use crate::planes::dense::{CloudComparison, DensePlane, DenseTrace, dense_planes};
+use crate::planes::grouping::ProposedPlane;
 
 /// Planes of the surfaces that the views agree on.
 pub(super) type Found = Outcome<Vec<DensePlane>, DenseTrace>;
@@ -18,17 +19,29 @@ impl StageDefinition for Dense {
     const NAME: &'static str = "dense";
     const TITLE: &'static str = "Dense planes";
     const SECTION: &'static str = "B99 2";
-    const READS: &'static [&'static str] = &["dense", "point_cloud"];
+    const READS: &'static [&'static str] = &["point_cloud"];
     const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground];
+    const PROPOSALS: Option<fn(&Found) -> Vec<ProposedPlane>> = Some(|found| {
+        let planes = found.value.iter().enumerate();
+        let of_cloud = found.trace.counted_cloud().into_iter();
+        let of_cloud = of_cloud.flat_map(|cloud| &cloud.planes).enumerate();
+        let planes = planes.map(|(i, plane)| plane.proposed(i));
+        planes
+            .chain(of_cloud.map(|(i, plane)| plane.proposed(i)))
+            .collect()
+    });
     const SHARD_MAPS: &'static [&'static str] = &["levels", "patches"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
-        if !params.dense.enabled {
-            return Ok((Vec::new(), DenseTrace::default()).into());
-        }
         let lines = &required(&before.lines).value;
         let ground = required(&before.ground);
-        Ok(dense_planes(scene, lines, ground, &params.point_cloud)?.into())
+        let is_source = |source| params.sources().contains(&source);
+        let cloud = is_source(Source::PointCloud).then_some(&params.point_cloud);
+        let (mut planes, trace) = dense_planes(scene, lines, ground, cloud)?;
+        if !is_source(Source::Dense) {
+            planes.clear();
+        }
+        Ok((planes, trace).into())
     }
 
     fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {

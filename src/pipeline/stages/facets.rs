@@ -37,15 +37,13 @@ impl StageDefinition for Facets {
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
         let facets = &found.value.facets;
         let none = "no roof facet was found: the model is empty";
-        let has_planes =
-            is_any(&before.half_planes) || is_any(&before.coplanar) || is_any(&before.adjacency);
         Findings {
             counts: vec![
                 ("facets", facets.len()),
                 ("buildings", found.value.buildings.len()),
             ],
             warnings: [
-                warn_if(facets.is_empty() && has_planes, none),
+                warn_if(facets.is_empty() && is_any(&before.lines), none),
                 found
                     .trace
                     .facets

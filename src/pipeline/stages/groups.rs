@@ -5,11 +5,9 @@ use std::sync::Arc;
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition, required};
 use crate::base::execution::Sharded;
-use crate::base::params::Params;
+use crate::base::params::{Params, Source};
 use crate::orienting::scene::Scene;
-use crate::planes::dense::CloudComparison;
-use crate::planes::grouping::{GroupedPlanes, ProposedPlane};
-use crate::planes::objectspace::proposed_planes;
+use crate::planes::grouping::GroupedPlanes;
 use crate::roofs::facets::{
     CompetingPlanes, FacetInput, GroupingTrace, PlacedCloud, competing_planes,
 };
@@ -38,55 +36,22 @@ impl StageDefinition for Groups {
         Stage::Segments,
         Stage::Lines,
         Stage::Ground,
-        Stage::Coplanar,
-        Stage::Adjacency,
         Stage::HalfPlanes,
-        Stage::Rectangles,
-        Stage::Dense,
     ];
+    const TAKES_PROPOSALS: bool = true;
     const SHARD_MAPS: &'static [&'static str] = &["planes"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
-        let rectangles = before.rectangles.as_ref();
-        let rectangles = rectangles.map_or_else(Vec::new, |found| proposed_planes(&found.trace));
-        let dense = before.dense.iter().flat_map(|found| &found.value);
-        let dense = dense.enumerate().map(|(i, plane)| plane.proposed(i));
-        let sets = before
-            .coplanar
-            .iter()
-            .flat_map(|found| &found.value)
-            .enumerate();
-        let verified = sets.filter(|(_, set)| set.is_verified());
-        let coplanar = verified.map(|(i, set)| set.proposed(i));
-        let of_corners = before.adjacency.iter().flat_map(|found| &found.value);
-        let verified = of_corners
-            .enumerate()
-            .filter(|(_, plane)| plane.is_verified());
-        let corners = verified.map(|(i, plane)| plane.proposed(i));
-        let cloud = before.dense.iter().filter_map(|found| {
-            let compared = found.trace.point_cloud.as_ref();
-            compared.filter(|compared| compared.counts())
-        });
-        let of_cloud = (cloud.clone()).flat_map(|c| &c.planes).enumerate();
-        let of_cloud = of_cloud.map(|(i, plane)| plane.proposed(i));
-        let others = rectangles.into_iter().chain(coplanar).chain(corners);
-        let proposals: Vec<ProposedPlane> = others.chain(dense).chain(of_cloud).collect();
-        let placed = |compared: &CloudComparison| {
-            // Only the instance that weighs the planes has the points.
-            let known = scene.known.point_cloud.as_ref()?;
-            Some(PlacedCloud {
-                points: compared.placed(known),
-                accuracy_m: compared.accuracy_m,
-                belongs: compared.belongs,
-                params: params.point_cloud.clone(),
-            })
-        };
-        let cloud: Option<Arc<PlacedCloud>> = cloud.filter_map(placed).map(Arc::new).next();
+        let cloud = (before.dense.as_ref()).and_then(|found| found.trace.counted_cloud());
+        let cloud = cloud.and_then(|cloud| PlacedCloud::new(scene, cloud, &params.point_cloud));
+        let cloud = cloud.map(Arc::new);
+        let proposals = before.proposals();
+        let half_planes = before.half_planes.as_ref();
         let ground = required(&before.ground);
         let grouped = GroupedPlanes::new(
             &required(&before.lines).value,
-            &required(&before.half_planes).value,
-            params.method.pairs_lines(),
+            half_planes.map_or(&[], |found| &found.value),
+            params.sources().contains(&Source::LinePairs),
             &proposals,
             ground,
             &params.roof,

@@ -25,12 +25,7 @@ impl StageDefinition for HalfPlanes {
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let lines = &required(&before.lines).value;
         let ground = required(&before.ground);
-        let swept = if params.method.pairs_lines() {
-            &lines[..]
-        } else {
-            &[]
-        };
-        Ok(sweep_half_planes(scene, swept, ground, &params.sweep)?.into())
+        Ok(sweep_half_planes(scene, lines, ground, &params.sweep)?.into())
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {

@@ -2,11 +2,11 @@
 //!
 //! To add a stage: write its file after the pattern of any other (what it finds, then the `impl` of
 //! [`StageDefinition`] with its name, the stages it needs, the parameters it reads, its sharded
-//! maps, how it runs and how it is summarised); add `mod` and a line at its place in the table
-//! below; run `make golden`, which writes the table that the page reads. On the page, what it is to
-//! fetch and show is in `www/src/app/stages`. Everything else follows from the table: the order,
-//! the methods, what is out of date after a change of parameters, what workers are given, the
-//! reports.
+//! maps, how it runs, how it is summarised, and which planes it proposes); add `mod` and a line at
+//! its place in the table below; run `make golden`, which writes the table that the page reads.
+//! Everything else follows from the table: the order, what is out of date after a change of
+//! parameters, what workers are given, the reports. Which stages run follows from the sources of
+//! planes; a new source is a line in `params/sources.rs`, too.
 //!
 //! Invariant: no file of a stage knows another one; they meet in [`Results`].
 
@@ -30,21 +30,21 @@ use serde::de::DeserializeOwned;
 use serde::{Serialize, Serializer};
 
 use crate::base::execution::Sharded;
-use crate::base::params::Method;
-use crate::base::params::Params;
+use crate::base::params::{Params, Source};
 use crate::orienting::scene::Scene;
+use crate::planes::grouping::ProposedPlane;
 
 /// Makes the enumeration of the stages, the type of their results and the rows of the table.
 macro_rules! stage_table {
-    ($($(#[$doc:meta])* $stage:ident in $file:ident $(of $folder:ident)?: $methods:expr,)*) => {
-        /// The stages of all methods, in their order.
+    ($($(#[$doc:meta])* $stage:ident in $file:ident $(of $folder:ident)?: $needed_by:expr,)*) => {
+        /// The stages of all sources of planes, in their order.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Stage {
             $($(#[$doc])* $stage,)*
         }
 
         impl Stage {
-            /// All stages of all methods, in their order.
+            /// All of them, in their order.
             pub const ALL: &'static [Self] = &[$(Self::$stage,)*];
         }
 
@@ -59,30 +59,38 @@ macro_rules! stage_table {
                 match self {
                     $(Self::$stage => {
                         use $($folder::)?$file::$stage as Definition;
-                        &Row {
-                            name: Definition::NAME,
-                            title: Definition::TITLE,
-                            section: Definition::SECTION,
-                            methods: $methods,
-                            reads: Definition::READS,
-                            needs: Definition::NEEDS,
-                            shard_maps: Definition::SHARD_MAPS,
-                            shards_read_colours: Definition::SHARDS_READ_COLOURS,
-                            run: |scene, params, results| {
-                                results.$file = Some(Definition::run(scene, params, results)?);
-                                Ok(())
-                            },
-                            summary: |scene, results| match &results.$file {
-                                Some(found) => Definition::summary(scene, found, results),
-                                None => Findings::default(),
-                            },
-                            is_found: |results| results.$file.is_some(),
-                            discard: |results| results.$file = None,
-                            pack: |results| results.$file.as_ref().map(Definition::pack),
-                            unpack: |results, bytes| {
-                                results.$file = Definition::unpack(bytes);
-                                results.$file.is_some()
-                            },
+                        const {
+                            &Row {
+                                name: Definition::NAME,
+                                title: Definition::TITLE,
+                                section: Definition::SECTION,
+                                needed_by: $needed_by,
+                                reads: Definition::READS,
+                                needs: Definition::NEEDS,
+                                proposes: Definition::PROPOSALS.is_some(),
+                                takes_proposals: Definition::TAKES_PROPOSALS,
+                                shard_maps: Definition::SHARD_MAPS,
+                                shards_read_colours: Definition::SHARDS_READ_COLOURS,
+                                run: |scene, params, results| {
+                                    results.$file = Some(Definition::run(scene, params, results)?);
+                                    Ok(())
+                                },
+                                summary: |scene, results| match &results.$file {
+                                    Some(found) => Definition::summary(scene, found, results),
+                                    None => Findings::default(),
+                                },
+                                proposed: |results| match (Definition::PROPOSALS, &results.$file) {
+                                    (Some(proposals), Some(found)) => proposals(found),
+                                    _ => Vec::new(),
+                                },
+                                is_found: |results| results.$file.is_some(),
+                                discard: |results| results.$file = None,
+                                pack: |results| results.$file.as_ref().map(Definition::pack),
+                                unpack: |results, bytes| {
+                                    results.$file = Definition::unpack(bytes);
+                                    results.$file.is_some()
+                                },
+                            }
                         }
                     })*
                 }
@@ -90,26 +98,18 @@ macro_rules! stage_table {
         }
     };
 }
-const RECTANGLES: &[Method] = &[Method::Rectangles, Method::Combined];
-const DENSE: &[Method] = &[Method::Lines, Method::Combined];
-const COPLANAR: &[Method] = &[Method::Lines, Method::Combined, Method::Coplanar];
-const ADJACENCY: &[Method] = &[Method::Lines, Method::Combined, Method::Adjacency];
-const LINES: &[Method] = &[
-    Method::Lines,
-    Method::Combined,
-    Method::Coplanar,
-    Method::Adjacency,
-];
-const ALL: &[Method] = &Method::ALL;
 
-// The order of the stages, the file of each, and the methods that it belongs to.
+const RECTANGLES: fn(Source) -> bool = |source| source == Source::Rectangles;
+const ALL: fn(Source) -> bool = |_| true;
+
+// The order of the stages, the file of each, and the sources of planes that need it.
 stage_table! {
     /// Straight image segments in every view (B99 3.2).
-    Segments in segments: LINES,
+    Segments in segments: Source::is_of_lines,
     /// Segments matched over the views (B99 3.1 - 3.4).
-    Matches in matches: LINES,
+    Matches in matches: Source::is_of_lines,
     /// Single views adjusted to the matched lines.
-    Adjustment in adjustment: LINES,
+    Adjustment in adjustment: Source::is_of_lines,
     /// Regions with straight boundaries in every view, and the lines on these (W96 3.3).
     Regions in regions of objectspace: RECTANGLES,
     /// Windows and their main directions (W96 3.4).
@@ -117,25 +117,25 @@ stage_table! {
     /// 3D lines by clustering (W96 3.5).
     Clusters in clusters of objectspace: RECTANGLES,
     /// 3D lines (B99 3.2).
-    Lines in lines: LINES,
+    Lines in lines: Source::is_of_lines,
     /// The height of the ground.
     Ground in ground: ALL,
     /// Planes between parallel lines and the closed buildings below them (W96 3.6).
     Rectangles in rectangles of objectspace: RECTANGLES,
     /// Coplanar lines and their polygons (B99 2, 5).
-    Coplanar in coplanar: COPLANAR,
+    Coplanar in coplanar: |source| source == Source::Coplanar,
     /// Corners matched over the views, and the planes that they propose (B99 2).
-    Adjacency in adjacency: ADJACENCY,
+    Adjacency in adjacency: |source| source == Source::Adjacency,
     /// Half-planes at the 3D lines (B99 4.1).
-    HalfPlanes in half_planes: LINES,
+    HalfPlanes in half_planes: |source| source == Source::HalfPlanes,
     /// Planes from dense matching (B99 2).
-    Dense in dense: DENSE,
+    Dense in dense: |source| matches!(source, Source::Dense | Source::PointCloud),
     /// Groups of lines and half-planes, and the planes that compete for the plan (B99 4.2).
-    Groups in groups: LINES,
+    Groups in groups: Source::is_of_lines,
     /// Roof facets and the closed buildings below them (B99 4.3).
-    Facets in facets: LINES,
+    Facets in facets: Source::is_of_lines,
     /// The buildings refined by the edges of all views (B99 2).
-    Refinement in refinement: LINES,
+    Refinement in refinement: Source::is_of_lines,
     /// What somebody corrects of the model by hand.
     Corrections in corrections: ALL,
     /// The textured model.
@@ -170,8 +170,12 @@ pub(super) trait StageDefinition {
     const SECTION: &'static str;
     /// The parameters that it reads, as paths of names; they may be groups.
     const READS: &'static [&'static str];
-    /// The stages whose results it takes in, as far as the method has them.
+    /// The stages whose results it takes in, as far as they run.
     const NEEDS: &'static [Stage];
+    /// Does it take in what all sources propose?
+    const TAKES_PROPOSALS: bool = false;
+    /// The planes that it proposes for roofs, where it is a source of them.
+    const PROPOSALS: Option<fn(&Self::Found) -> Vec<ProposedPlane>> = None;
     /// Its sharded maps, in the order in which they are called.
     const SHARD_MAPS: &'static [&'static str] = &[];
     /// Do its sharded maps read the colours of the views, or grey values only?
@@ -208,9 +212,12 @@ pub(super) struct Row {
     name: &'static str,
     title: &'static str,
     section: &'static str,
-    pub methods: &'static [Method],
+    needed_by: fn(Source) -> bool,
     pub reads: &'static [&'static str],
     needs: &'static [Stage],
+    takes_proposals: bool,
+    proposes: bool,
+    proposed: fn(&Results) -> Vec<ProposedPlane>,
     shard_maps: &'static [&'static str],
     shards_read_colours: bool,
     pub run: fn(&Scene, &Params, &mut Results) -> Sharded<()>,
@@ -222,10 +229,10 @@ pub(super) struct Row {
 }
 
 impl Stage {
-    /// The stages of a method, in their order.
-    pub fn of(method: Method) -> Vec<Self> {
-        let has = |stage: &Self| stage.row().methods.contains(&method);
-        Self::ALL.iter().copied().filter(has).collect()
+    /// The stages that sources of planes need, in their order.
+    pub fn of(sources: &[Source]) -> Vec<Self> {
+        let is_needed = |stage: &Self| sources.iter().any(|&s| (stage.row().needed_by)(s));
+        Self::ALL.iter().copied().filter(is_needed).collect()
     }
 
     /// The name in messages, reports and the session: one lower-case word.
@@ -264,10 +271,22 @@ impl Stage {
         self.row().reads
     }
 
-    /// The stages of the method whose results it takes in.
-    pub(super) fn needs(self, method: Method) -> impl Iterator<Item = Self> {
-        let needs = self.row().needs.iter().copied();
-        needs.filter(move |stage| stage.row().methods.contains(&method))
+    /// The stages whose results it takes in, of those that sources need.
+    pub(super) fn needs(self, sources: &[Source]) -> Vec<Self> {
+        let row = self.row();
+        let mut stages = Self::of(sources);
+        stages.retain(|s| row.needs.contains(s) || row.takes_proposals && s.row().proposes);
+        stages
+    }
+}
+
+impl Results {
+    /// The planes that the sources propose, in the order of their stages.
+    fn proposals(&self) -> Vec<ProposedPlane> {
+        let stages = Stage::ALL.iter();
+        stages
+            .flat_map(|stage| (stage.row().proposed)(self))
+            .collect()
     }
 }
 

@@ -100,6 +100,11 @@ pub struct DenseTrace {
 }
 
 impl DenseTrace {
+    /// The point cloud, where it counts.
+    pub fn counted_cloud(&self) -> Option<&CloudComparison> {
+        self.point_cloud.as_ref().filter(|cloud| cloud.counts())
+    }
+
     /// What the planes are, as it is written out.
     pub(crate) fn judged(&self, planes: &[DensePlane]) -> Vec<JudgedSurface> {
         let judged = |(plane, class): (&DensePlane, &SurfaceEvidence)| JudgedSurface {
@@ -114,12 +119,13 @@ impl DenseTrace {
     }
 }
 
-/// Planes of the surfaces that the views agree on.
+/// Planes of the surfaces that the views agree on, and of a point cloud that is known, where it is a
+/// source of planes.
 pub fn dense_planes(
     scene: &Scene,
     lines: &[Line3d],
     ground: &Ground,
-    params: &PointCloudParams,
+    cloud: Option<&PointCloudParams>,
 ) -> Sharded<(Vec<DensePlane>, DenseTrace)> {
     let Some(search) = Search::new(scene, lines) else {
         return Ok(Default::default());
@@ -138,8 +144,8 @@ pub fn dense_planes(
     let classes = crate::base::execution::map(&regions, |_, region| {
         surface_class::weigh(region, &found, scene, ground, z_per_pixel)
     });
-    let cloud = scene.known.point_cloud.as_ref().filter(|_| params.enabled);
-    let point_cloud = cloud.map(|cloud| {
+    let cloud = scene.known.point_cloud.as_ref().zip(cloud);
+    let point_cloud = cloud.map(|(cloud, params)| {
         let matched = Matched {
             found: &found,
             regions: &regions,
@@ -299,13 +305,7 @@ mod tests {
             Point3::new(7.0, 0.0, RIDGE_Z),
         );
         let kerb = line(Point3::new(-7.0, -8.0, 0.0), Point3::new(7.0, 8.0, 0.0));
-        dense_planes(
-            &views,
-            &[ridge, kerb],
-            &Ground::level(0.0),
-            &PointCloudParams::default(),
-        )
-        .unwrap()
+        dense_planes(&views, &[ridge, kerb], &Ground::level(0.0), None).unwrap()
     }
 
     #[test]
@@ -367,13 +367,7 @@ mod tests {
 
     #[test]
     fn nothing_is_sought_without_lines() {
-        let (planes, trace) = dense_planes(
-            &scene(&[]),
-            &[],
-            &Ground::level(0.0),
-            &PointCloudParams::default(),
-        )
-        .unwrap();
+        let (planes, trace) = dense_planes(&scene(&[]), &[], &Ground::level(0.0), None).unwrap();
         assert!(planes.is_empty() && trace.patches.is_empty());
     }
 }

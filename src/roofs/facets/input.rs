@@ -6,6 +6,8 @@ use nalgebra::Point3;
 
 use crate::base::params::PointCloudParams;
 use crate::lines::lines2d::ImageSegment;
+use crate::orienting::scene::Scene;
+use crate::planes::dense::CloudComparison;
 use crate::planes::grouping::GroupedPlanes;
 use crate::planes::terrain::Ground;
 
@@ -20,6 +22,23 @@ pub struct PlacedCloud {
     pub belongs: f64,
     /// How far its points are believed.
     pub params: PointCloudParams,
+}
+
+impl PlacedCloud {
+    /// As it was compared with the images; `None` in an instance without the points, of which only
+    /// the one that weighs the planes has them.
+    pub fn new(
+        scene: &Scene,
+        compared: &CloudComparison,
+        params: &PointCloudParams,
+    ) -> Option<Self> {
+        Some(Self {
+            points: compared.placed(scene.known.point_cloud.as_ref()?),
+            accuracy_m: compared.accuracy_m,
+            belongs: compared.belongs,
+            params: params.clone(),
+        })
+    }
 }
 
 /// Everything that facets are reconstructed from.

@@ -19,4 +19,5 @@ mod new_lines;
 mod surfaces;
 mod verify;
 
-pub use verify::{VerifiedLines, verify_lines};
+pub use verify::VerifiedLines;
+pub(super) use verify::verify_lines;

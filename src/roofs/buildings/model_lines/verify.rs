@@ -27,7 +27,7 @@ pub struct VerifiedLines {
 
 /// Weighs the lines in a finished model, finds duplicates among those that stand, and measures the
 /// edges of the model that none of them explains.
-pub fn verify_lines(
+pub(crate) fn verify_lines(
     scene: &Scene,
     lines: &[Line3d],
     model: &RoofModel,
