@@ -41,7 +41,8 @@ pub struct UnrefinedFacets {
     pub sources: Vec<usize>,
 }
 
-/// Cuts facets back at gaps, refines the buildings, closes them again, and weighs the lines in them.
+/// Cuts facets back at gaps, refines the buildings, closes them again, and weighs the lines in
+/// them.
 pub fn refine_buildings(
     scene: &Scene,
     lines: &[Line3d],
