@@ -3,7 +3,7 @@ import { ImageCanvas } from "../app/images/ImageCanvas";
 import { overlayOf } from "../app/images/overlays";
 import { marksOf } from "../app/images/selectionMarks";
 import type { Tab } from "../app/state/methods";
-import { type Figure, viewName } from "../shared/figure";
+import { type Figure, viewName } from "../stages/figure";
 
 interface Props {
   figure: Figure;

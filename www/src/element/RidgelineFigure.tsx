@@ -10,7 +10,7 @@ import { pngOf, svgOf } from "../app/takeAlong/pictures";
 import { csvOf, type Row } from "../app/takeAlong/tables";
 import type { CoreSource } from "../core/workerEngine";
 import type { Args, InputFile, Result } from "../shared/calls";
-import type { Figure } from "../shared/figure";
+import type { Figure } from "../stages/figure";
 import { FigureFrame, type Seen } from "./FigureFrame";
 import {
   addressOf,

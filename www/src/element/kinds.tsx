@@ -1,23 +1,23 @@
 /** The kinds of figures: what each is drawn with, the stages that it needs, and what is picked first. */
 import type { ComponentType } from "preact";
-import { AdjacencyLab } from "../app/figures/AdjacencyLab";
-import { ClusterLab } from "../app/figures/ClusterLab";
-import { CoplanarLab } from "../app/figures/CoplanarLab";
-import { DenseLab } from "../app/figures/DenseLab";
-import { DirectionLab } from "../app/figures/DirectionLab";
-import { FacetLab } from "../app/figures/FacetPlan";
-import { GroupLab, LineLab } from "../app/figures/LineLabs";
-import { PointLab } from "../app/figures/PointLab";
-import { RectangleLab } from "../app/figures/RectangleLab";
-import { RefinementLab } from "../app/figures/RefinementLab";
-import { SimLab } from "../app/figures/SimLab";
 import { ViewPicker } from "../app/images/ViewPicker";
 import type { Tab } from "../app/state/methods";
 import { ROWS, type Row, windowRows } from "../app/takeAlong/tables";
-import type { Figure } from "../shared/figure";
 import { isVerifiedSet } from "../shared/proposed";
 import type { Selection } from "../shared/selection";
 import type { Method, StageName } from "../shared/stages";
+import { AdjacencyLab } from "../stages/adjacency/AdjacencyLab";
+import { ClusterLab } from "../stages/clusters/ClusterLab";
+import { CoplanarLab } from "../stages/coplanar/CoplanarLab";
+import { DenseLab } from "../stages/dense/DenseLab";
+import { DirectionLab } from "../stages/directions/DirectionLab";
+import { FacetLab } from "../stages/facets/FacetLab";
+import type { Figure } from "../stages/figure";
+import { SimLab } from "../stages/halfplanes/SimLab";
+import { GroupLab, LineLab } from "../stages/lines/LineLab";
+import { PointLab } from "../stages/matches/PointLab";
+import { RectangleLab } from "../stages/rectangles/RectangleLab";
+import { RefinementLab } from "../stages/refinement/RefinementLab";
 import { ImageRow } from "./ImageRow";
 
 export interface Kind {

@@ -7,10 +7,10 @@ import { stagesOf, stageWords } from "../app/session/stageCatalogue";
 import { fetchResults } from "../app/session/stageResults";
 import { type CoreSource, WorkerEngine } from "../core/workerEngine";
 import type { Args, CallName, InputFile, Result } from "../shared/calls";
-import { NO_RESULTS, type Results } from "../shared/figure";
 import type { ParamTree } from "../shared/paramTree";
 import type { LoadOptions, Params, SceneInfo } from "../shared/records";
 import type { Method, StageName } from "../shared/stages";
+import { NO_RESULTS, type Results } from "../stages/figure";
 
 export interface SceneState {
   scene: SceneInfo | null;

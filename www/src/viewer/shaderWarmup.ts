@@ -6,12 +6,12 @@ import { Mesh, MeshBasicMaterial, type Object3D, Sphere, SphereGeometry, Texture
 import type { GroundTexture } from "../shared/calls";
 import { PALETTE } from "../shared/palette";
 import type { Facet, GroupingTrace, HalfPlane, LineRecord, SideRecord } from "../shared/records";
+import { buildGroups } from "../stages/groups/groupsLayer";
+import { buildFans } from "../stages/halfplanes/fansLayer";
+import { buildLines } from "../stages/lines/linesLayer";
+import { buildGround } from "../stages/model/groundLayer";
 import { buildFacets } from "./layers/facets";
-import { buildFans } from "./layers/fans";
-import { buildGround } from "./layers/ground";
-import { buildGroups } from "./layers/groups";
 import { buildHighlight } from "./layers/highlight";
-import { buildLines } from "./layers/lines";
 import { edgeLines } from "./layers/model";
 import { buildOutlines } from "./layers/outlines";
 import { buildGrid } from "./scene/grid";

@@ -1,8 +1,8 @@
 /** The selected thing in every view, each picture zoomed to it: "it lights up in every image". */
 import "./images.css";
 import { useEffect, useRef } from "preact/hooks";
-import type { Figure } from "../../shared/figure";
 import type { Selection } from "../../shared/selection";
+import type { Figure } from "../../stages/figure";
 import { textScale } from "../state/textScale";
 import { drawView } from "./drawing";
 import { paint } from "./pen";

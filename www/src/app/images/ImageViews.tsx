@@ -1,8 +1,8 @@
 /** The image tabs: one view or all of them, with what the tab's stage found drawn over. */
 import "./images.css";
 import type { ComponentChildren } from "preact";
-import type { Figure } from "../../shared/figure";
 import type { Vec2 } from "../../shared/records";
+import type { Figure } from "../../stages/figure";
 import { Legend } from "../parts/Legend";
 import { followsSelection, showRejected, tab, withRejected, zoomToSelection } from "../state/viewState";
 import { ImageCanvas } from "./ImageCanvas";

@@ -1,6 +1,7 @@
 /** What the figure of a stage draws over a view. */
-import type { Figure, Results } from "../../shared/figure";
+
 import { category } from "../../shared/palette";
+import type { Figure, Results } from "../../stages/figure";
 import type { Tab } from "../state/methods";
 import { directionColours } from "./directionColours";
 import type { Overlay } from "./drawing";

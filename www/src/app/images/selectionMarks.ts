@@ -3,11 +3,11 @@
  * matrix, as the viewer's graphics card does; everything else is drawn as the core gave it.
  */
 
-import type { Figure, Results, SelectionDetail } from "../../shared/figure";
 import { REJECTED_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import type { Vec2, Vec3, ViewInfo } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import type { Figure, Results, SelectionDetail } from "../../stages/figure";
 import { type Shape, shapesOf } from "../selection/selectionShapes";
 import { windowOf } from "./pairWindow";
 

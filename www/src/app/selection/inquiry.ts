@@ -1,8 +1,8 @@
 /** What follows from a selection: a figure asks the core about the thing that was picked. */
 import type { Args, CallName, Result } from "../../shared/calls";
-import { NO_DETAIL, type Results, type Resumed, type SelectionDetail } from "../../shared/figure";
 import type { Side, SideTrace } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import { NO_DETAIL, type Results, type Resumed, type SelectionDetail } from "../../stages/figure";
 
 /** Whose selection it is, and whom it asks. */
 export interface Inquirer {

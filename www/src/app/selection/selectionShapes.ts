@@ -1,10 +1,10 @@
 /** What a selection is in space: polylines in the local frame, which light up in every image and in the 3D view. */
 
-import type { Results } from "../../shared/figure";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import { edgesOfCorner, isVerifiedPlane, outlinesBefore } from "../../shared/proposed";
 import { densePlanesOf, type Segment3, type Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import type { Results } from "../../stages/figure";
 import { fanRing } from "../../viewer/scene/fanRing";
 import { refinedFacets } from "./refinedBuildings";
 

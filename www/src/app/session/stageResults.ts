@@ -1,8 +1,8 @@
 /** What a stage adds to the results. */
 import type { Args, CallName, Result } from "../../shared/calls";
-import type { Results } from "../../shared/figure";
 import type { ParamTree } from "../../shared/paramTree";
 import type { StageName } from "../../shared/stages";
+import type { Results } from "../../stages/figure";
 
 /** Who answers, and of what. */
 export interface ResultSource {

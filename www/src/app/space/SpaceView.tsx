@@ -5,7 +5,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { Box3, Vector3 } from "three";
 import { THEME_COLOURS } from "../../shared/palette";
 import type { Vec3 } from "../../shared/records";
-import { enlargement } from "../../viewer/layers/uncertainty";
+import { enlargement } from "../../stages/lines/uncertaintyLayer";
 import { cornersOf, cornersOfFacets, endsOfLines, withCameras } from "../../viewer/scene/bounds";
 import { GRID_STEP_M } from "../../viewer/scene/grid";
 import { warmupLayers } from "../../viewer/shaderWarmup";

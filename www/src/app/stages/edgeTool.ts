@@ -1,7 +1,8 @@
 /** Edges that are drawn in the photographs, and the lines that were found for them. */
-import type { Figure } from "../../shared/figure";
+
 import { PALETTE } from "../../shared/palette";
 import type { Vec2 } from "../../shared/records";
+import type { Figure } from "../../stages/figure";
 import { drawEdge, edgeStart, isDrawingEdge, takeEdgeEnd } from "../corrections/edgeDrawing";
 import type { PlaceTool } from "../images/ImageViews";
 import { type Mark, project } from "../images/selectionMarks";

@@ -1,7 +1,7 @@
 /** What the stages have found. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
-import { NO_RESULTS, type Results } from "../../shared/figure";
 import type { Facet } from "../../shared/records";
+import { NO_RESULTS, type Results } from "../../stages/figure";
 import { REGION_TABS, type Tab } from "./methods";
 import { method } from "./parameters";
 import { tab } from "./viewState";

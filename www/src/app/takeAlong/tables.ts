@@ -1,8 +1,9 @@
 /** The numbers behind the figures as tables: a record a row, lengths in metres, angles in degrees, places in images in pixels. */
-import type { Figure } from "../../shared/figure";
+
 import { isVerifiedSet } from "../../shared/proposed";
 import type { Vec3 } from "../../shared/records";
 import { likeliestClass } from "../../shared/surfaceClass";
+import type { Figure } from "../../stages/figure";
 import type { Tab } from "../state/methods";
 
 export type Row = Record<string, string | number | boolean | null>;

@@ -3,7 +3,7 @@ import type { FigureState } from "../../element/figureState";
 import type { KindName } from "../../element/kinds";
 import type { Question } from "../../element/RidgelineFigure";
 import type { Args, Result } from "../../shared/calls";
-import type { Figure } from "../../shared/figure";
+import type { Figure } from "../../stages/figure";
 import type { About, Verdict } from "../judging/about";
 import type { Unit } from "../judging/quantity";
 

@@ -12,7 +12,7 @@ import {
   stateInAddress,
 } from "../../../src/element/figureState";
 import { fetchScene, sceneUrl } from "../../../src/element/sceneFiles";
-import { type Figure, NO_DETAIL, NO_RESULTS } from "../../../src/shared/figure";
+import { type Figure, NO_DETAIL, NO_RESULTS } from "../../../src/stages/figure";
 
 const PAGE = "https://school.example/lesson/3.html?class=a#top";
 

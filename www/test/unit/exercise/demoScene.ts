@@ -9,9 +9,9 @@ import { KINDS, type KindName } from "../../../src/element/kinds";
 import type { SceneState, SharedScene } from "../../../src/element/sharedScene";
 import type { Asked } from "../../../src/exercise/figures/judgeFigure";
 import * as core from "../../../src/pkg/ridgeline.js";
-import type { Figure } from "../../../src/shared/figure";
-import { NO_RESULTS } from "../../../src/shared/figure";
 import type { Method, StageName } from "../../../src/shared/stages";
+import type { Figure } from "../../../src/stages/figure";
+import { NO_RESULTS } from "../../../src/stages/figure";
 
 const WWW = new URL("../../../", import.meta.url);
 

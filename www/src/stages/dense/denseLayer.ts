@@ -7,11 +7,11 @@ import { CLASS_COLOURS, PALETTE } from "../../shared/palette";
 import type { DensePlane, DensePlanes, Patch } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { gradientOf, heightAt, likeliestClass, planesOfPatches } from "../../shared/surfaceClass";
-import { opacityOf } from "../scene/certainty";
-import { zUpGroup } from "../scene/frame";
-import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../scene/layer";
-import { SelectedObject } from "../scene/selectedObject";
-import { strokes } from "../scene/strokes";
+import { opacityOf } from "../../viewer/scene/certainty";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../../viewer/scene/layer";
+import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { strokes } from "../../viewer/scene/strokes";
 
 /** Side of a square over the distance of neighbours: narrow gaps let single patches be seen. */
 const SIDE = { inPlane: 0.94, free: 0.36 };

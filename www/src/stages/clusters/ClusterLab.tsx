@@ -1,16 +1,16 @@
 /** W96 3.5: the plane across a main direction, its image lines and its clusters (figures 7 and 8). */
 
-import "./figures.css";
+import "../../app/figures/figures.css";
 import { useId } from "preact/hooks";
-import type { Figure, Results } from "../../shared/figure";
+import { PlaneChoice } from "../../app/figures/PlaneChoice";
+import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "../../app/parts/charts";
+import { counted } from "../../app/parts/counted";
+import { degreesOf, grouped } from "../../app/parts/numberText";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import { category } from "../../shared/palette";
 import type { ClusterTrace, Directions, Vec2 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "../parts/charts";
-import { counted } from "../parts/counted";
-import { degreesOf, grouped } from "../parts/numberText";
-import { PlaneChoice } from "./PlaneChoice";
+import type { Figure, Results } from "../figure";
 
 /** Figures 7 and 8: image lines of one direction in the plane across it, and the clusters that description length chose. */
 export function ClusterLab({ figure }: { figure: Figure }) {

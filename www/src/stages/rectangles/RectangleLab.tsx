@@ -1,12 +1,12 @@
 /** W96 3.6: the window of a plane between parallel lines, and the histogram of positions (figures 10 and 11). */
-import "./figures.css";
-import type { Figure } from "../../shared/figure";
+import "../../app/figures/figures.css";
+import { Filmstrip } from "../../app/images/Filmstrip";
+import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../../app/parts/charts";
+import { counted } from "../../app/parts/counted";
+import { PAIR_WORDS } from "../../app/parts/reasonText";
 import { category } from "../../shared/palette";
 import type { PlaneTrace } from "../../shared/records";
-import { Filmstrip } from "../images/Filmstrip";
-import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../parts/charts";
-import { counted } from "../parts/counted";
-import { PAIR_WORDS } from "../parts/reasonText";
+import type { Figure } from "../figure";
 
 /** Figures 10 and 11: the window between two parallel lines, the lines that cross it, and their positions. */
 export function RectangleLab({ figure }: { figure: Figure }) {

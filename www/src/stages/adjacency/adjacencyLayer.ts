@@ -7,10 +7,10 @@ import { category, PALETTE } from "../../shared/palette";
 import { edgesOfCorner, isVerifiedPlane } from "../../shared/proposed";
 import type { AdjacencyGraphs, CornerPlane, SpaceCorner } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import { zUpGroup } from "../scene/frame";
-import { disposeObject, type Layer } from "../scene/layer";
-import { SelectedObject } from "../scene/selectedObject";
-import { sidesOf, strokes } from "../scene/strokes";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { disposeObject, type Layer } from "../../viewer/scene/layer";
+import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { sidesOf, strokes } from "../../viewer/scene/strokes";
 
 const WIDTH_PX = { edges: 2.5, polygon: 2, refused: 1, selected: 5 };
 const OPACITY = { edges: 1, polygon: 0.9, refused: 0.35 };

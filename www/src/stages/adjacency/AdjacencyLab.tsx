@@ -1,11 +1,11 @@
 /** B99 2 (Bonn): the adjacency graph over an image; a corner that is picked there lights up in the other views and in space. */
-import "./figures.css";
-import type { Figure } from "../../shared/figure";
-import { Filmstrip } from "../images/Filmstrip";
-import { graphOverlay } from "../images/graphOverlay";
-import { ImageCanvas } from "../images/ImageCanvas";
-import { marksOf } from "../images/selectionMarks";
-import { ViewPicker } from "../images/ViewPicker";
+import "../../app/figures/figures.css";
+import { Filmstrip } from "../../app/images/Filmstrip";
+import { graphOverlay } from "../../app/images/graphOverlay";
+import { ImageCanvas } from "../../app/images/ImageCanvas";
+import { marksOf } from "../../app/images/selectionMarks";
+import { ViewPicker } from "../../app/images/ViewPicker";
+import type { Figure } from "../figure";
 
 export function AdjacencyLab({ figure }: { figure: Figure }) {
   const { scene, images, selection, results, act } = figure;

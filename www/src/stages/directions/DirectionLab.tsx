@@ -1,11 +1,11 @@
 /** W96 3.4: the histogram of azimuths (figures 4 and 5), and which direction an image line follows. */
-import "./figures.css";
-import type { Figure } from "../../shared/figure";
+import "../../app/figures/figures.css";
+import { PlaneChoice } from "../../app/figures/PlaneChoice";
+import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../../app/parts/charts";
+import { degreesOf } from "../../app/parts/numberText";
 import { category } from "../../shared/palette";
 import type { MainDirections } from "../../shared/records";
-import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
-import { degreesOf } from "../parts/numberText";
-import { PlaneChoice } from "./PlaneChoice";
+import type { Figure } from "../figure";
 
 const HALF = Math.PI / 2;
 

@@ -7,10 +7,10 @@ import { PALETTE } from "../../shared/palette";
 import { outlinesBefore } from "../../shared/proposed";
 import type { Refinement, Segment3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import { zUpGroup } from "../scene/frame";
-import { disposeObject, type Layer } from "../scene/layer";
-import { SelectedObject } from "../scene/selectedObject";
-import { sidesOf, strokes } from "../scene/strokes";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { disposeObject, type Layer } from "../../viewer/scene/layer";
+import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { sidesOf, strokes } from "../../viewer/scene/strokes";
 
 const WIDTH_PX = 1.75;
 const SELECTED_PX = 4;

@@ -7,10 +7,10 @@ import { category, PALETTE } from "../../shared/palette";
 import { isVerifiedSet } from "../../shared/proposed";
 import type { CoplanarSet, CoplanarSets } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import { zUpGroup } from "../scene/frame";
-import { disposeObject, type Layer } from "../scene/layer";
-import { SelectedObject } from "../scene/selectedObject";
-import { endsOf, sidesOf, strokes } from "../scene/strokes";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { disposeObject, type Layer } from "../../viewer/scene/layer";
+import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { endsOf, sidesOf, strokes } from "../../viewer/scene/strokes";
 
 const WIDTH_PX = { polygon: 3.5, hull: 1.5, refused: 1, line: 2, selected: 5 };
 const OPACITY = { polygon: 1, hull: 0.8, refused: 0.35 };

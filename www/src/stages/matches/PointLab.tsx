@@ -1,9 +1,9 @@
 /** B99 figures 2 to 4: the candidates of a segment, pointwise correspondence, and the two windows that are compared. */
-import "./figures.css";
+import "../../app/figures/figures.css";
 import { useEffect, useRef } from "preact/hooks";
-import { type Figure, viewName } from "../../shared/figure";
-import { counted } from "../parts/counted";
-import { outcomeWords } from "../parts/reasonText";
+import { counted } from "../../app/parts/counted";
+import { outcomeWords } from "../../app/parts/reasonText";
+import { type Figure, viewName } from "../figure";
 
 const WINDOW_PX = 15;
 

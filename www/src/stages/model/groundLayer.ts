@@ -11,8 +11,8 @@ import {
   Vector3,
 } from "three";
 import type { GroundTexture } from "../../shared/calls";
-import { zUpGroup } from "../scene/frame";
-import { BOTH_SIDES, disposeObject, type Layer, unpicked } from "../scene/layer";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { BOTH_SIDES, disposeObject, type Layer, unpicked } from "../../viewer/scene/layer";
 
 export function buildGround({ about, rgba }: GroundTexture): Layer {
   const geometry = new BufferGeometry().setFromPoints(about.corners.map((corner) => new Vector3(...corner)));

@@ -4,11 +4,11 @@ import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import type { LineOrigin, LineRecord } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import { opacityOf } from "../scene/certainty";
-import { zUpGroup } from "../scene/frame";
-import { disposeObject, type Layer } from "../scene/layer";
-import { SelectedObject } from "../scene/selectedObject";
-import { endsOf, strokes } from "../scene/strokes";
+import { opacityOf } from "../../viewer/scene/certainty";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { disposeObject, type Layer } from "../../viewer/scene/layer";
+import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { endsOf, strokes } from "../../viewer/scene/strokes";
 
 const WIDTH_PX = 2.25;
 const SELECTED_WIDTH_PX = 5;

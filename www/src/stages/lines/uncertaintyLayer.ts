@@ -7,9 +7,9 @@ import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import type { LineRecord } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import { zUpGroup } from "../scene/frame";
-import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
-import { SelectedObject } from "../scene/selectedObject";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { BOTH_SIDES, disposeObject, type Layer } from "../../viewer/scene/layer";
+import { SelectedObject } from "../../viewer/scene/selectedObject";
 
 /** xx, xy, xz, yy, yz, zz of a symmetric matrix, m². */
 export type Covariance = LineRecord["covariance"][number];

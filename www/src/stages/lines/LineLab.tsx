@@ -1,11 +1,11 @@
 /** B99 figure 9: accuracy against the number of views; figures 17 to 23: groups and border lines in plan. */
-import "./figures.css";
-import type { Figure, Results } from "../../shared/figure";
+import "../../app/figures/figures.css";
+import { Filmstrip } from "../../app/images/Filmstrip";
+import { axesOf, Chart, dotsOf, Fit, type Frame, type Scale } from "../../app/parts/charts";
+import { counted } from "../../app/parts/counted";
 import { category } from "../../shared/palette";
 import { densePlanesOf, type LineRecord, type PlaneGroup, rectanglesOf } from "../../shared/records";
-import { Filmstrip } from "../images/Filmstrip";
-import { axesOf, Chart, dotsOf, Fit, type Frame, type Scale } from "../parts/charts";
-import { counted } from "../parts/counted";
+import type { Figure, Results } from "../figure";
 
 /** The 3D lines by number of views, and the picked one in every view. */
 export function LineLab({ figure }: { figure: Figure }) {

@@ -1,16 +1,16 @@
 /** B99 2: sets of coplanar lines in plan, with their hulls before and their polygons after symmetry. */
-import "./figures.css";
+import "../../app/figures/figures.css";
 import { useState } from "preact/hooks";
-import type { Figure } from "../../shared/figure";
+import { Filmstrip } from "../../app/images/Filmstrip";
+import { Choice } from "../../app/parts/Choice";
+import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../../app/parts/charts";
+import { counted } from "../../app/parts/counted";
+import { type CoplanarOutlines, setAt, shownSets } from "../../app/selection/coplanarPlan";
+import { equalScales } from "../../app/selection/densePlan";
 import { category } from "../../shared/palette";
 import { isVerifiedSet } from "../../shared/proposed";
 import type { CoplanarSets, Vec3 } from "../../shared/records";
-import { Filmstrip } from "../images/Filmstrip";
-import { Choice } from "../parts/Choice";
-import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
-import { counted } from "../parts/counted";
-import { type CoplanarOutlines, setAt, shownSets } from "../selection/coplanarPlan";
-import { equalScales } from "../selection/densePlan";
+import type { Figure } from "../figure";
 
 const CHOICES: readonly (readonly [CoplanarOutlines, string])[] = [
   ["hull", "Hulls before"],

@@ -1,13 +1,13 @@
 /** B99 2: the patches of dense matching in plan, by what their planes are, or by how probably they are buildings. */
-import "./figures.css";
+import "../../app/figures/figures.css";
 import { useState } from "preact/hooks";
-import type { Figure } from "../../shared/figure";
+import { Filmstrip } from "../../app/images/Filmstrip";
+import { Choice } from "../../app/parts/Choice";
+import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../../app/parts/charts";
+import { counted } from "../../app/parts/counted";
+import { areasOf, equalScales, type PlanColours, planeAt, squaresAt } from "../../app/selection/densePlan";
 import type { DensePlanes, Vec2 } from "../../shared/records";
-import { Filmstrip } from "../images/Filmstrip";
-import { Choice } from "../parts/Choice";
-import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
-import { counted } from "../parts/counted";
-import { areasOf, equalScales, type PlanColours, planeAt, squaresAt } from "../selection/densePlan";
+import type { Figure } from "../figure";
 
 const CHOICES: readonly (readonly [PlanColours, string])[] = [
   ["class", "Classes"],

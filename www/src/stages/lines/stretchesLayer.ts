@@ -2,9 +2,9 @@
 
 import { STRETCH_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
-import { zUpGroup } from "../scene/frame";
-import { disposeObject, type Layer } from "../scene/layer";
-import { strokes } from "../scene/strokes";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { disposeObject, type Layer } from "../../viewer/scene/layer";
+import { strokes } from "../../viewer/scene/strokes";
 
 /** As wide as the lines that they are compared with. */
 const WIDTH_PX = 2.25;

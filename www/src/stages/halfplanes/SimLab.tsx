@@ -1,14 +1,14 @@
 /** B99 figures 10 to 14: the half-plane turned by hand, the views warped onto it, and Sim(theta). */
-import "./figures.css";
+import "../../app/figures/figures.css";
 import { useEffect, useRef } from "preact/hooks";
+import { axesOf, Chart, closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
+import { counted } from "../../app/parts/counted";
+import { REJECTION_WORDS } from "../../app/parts/reasonText";
+import { bestTheta, sideOf } from "../../app/selection/inquiry";
 import type { WarpedPicture } from "../../shared/calls";
-import { type Figure, viewName } from "../../shared/figure";
 import { category } from "../../shared/palette";
 import type { SideTrace } from "../../shared/records";
-import { axesOf, Chart, closedPathOf, Fit, type Frame, pathOf } from "../parts/charts";
-import { counted } from "../parts/counted";
-import { REJECTION_WORDS } from "../parts/reasonText";
-import { bestTheta, sideOf } from "../selection/inquiry";
+import { type Figure, viewName } from "../figure";
 
 const DEGREE = Math.PI / 180;
 

@@ -2,8 +2,8 @@
  * A figure: all that its components read, and what they can do. The page makes one of its state, an element that stands by itself
  * of its own; the components know neither, so a figure is written once.
  */
-import type { GroundTexture, WarpedPicture } from "./calls";
-import type { ParamTree } from "./paramTree";
+import type { GroundTexture, WarpedPicture } from "../shared/calls";
+import type { ParamTree } from "../shared/paramTree";
 import type {
   AdjacencyGraphs,
   ClusterTrace,
@@ -26,8 +26,8 @@ import type {
   SideRecord,
   SideTrace,
   TerrainComparison,
-} from "./records";
-import type { Selection } from "./selection";
+} from "../shared/records";
+import type { Selection } from "../shared/selection";
 
 /** What the stages have returned so far; arrays per view are empty until their stage has run. */
 export interface Results {

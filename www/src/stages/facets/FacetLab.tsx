@@ -1,14 +1,14 @@
 /** B99 figures 21 to 23: the facets in plan, each in the colour of its plane, and the border lines that enclose them. */
-import "./figures.css";
-import type { Figure } from "../../shared/figure";
+import "../../app/figures/figures.css";
+import { Filmstrip } from "../../app/images/Filmstrip";
+import { closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
+import { counted } from "../../app/parts/counted";
+import { FOOTPRINT_WORDS } from "../../app/parts/knownText";
+import { facetRejectionWords } from "../../app/parts/reasonText";
 import type { Facet, FacetTrace, GroupingTrace, Vec2 } from "../../shared/records";
 import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
 import { roofTintHex } from "../../viewer/scene/roofTint";
-import { Filmstrip } from "../images/Filmstrip";
-import { closedPathOf, Fit, type Frame, pathOf } from "../parts/charts";
-import { counted } from "../parts/counted";
-import { FOOTPRINT_WORDS } from "../parts/knownText";
-import { facetRejectionWords } from "../parts/reasonText";
+import type { Figure } from "../figure";
 
 /** Figures 21 to 23: border lines by their kind, what they enclose, and what was rejected. */
 export function FacetLab({ figure }: { figure: Figure }) {

@@ -12,9 +12,9 @@ import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import { type HalfPlane, isRejected, type Side, type SideRecord, type Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import { fanRing, fanWidth } from "../scene/fanRing";
-import { zUpGroup } from "../scene/frame";
-import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../scene/layer";
+import { fanRing, fanWidth } from "../../viewer/scene/fanRing";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../../viewer/scene/layer";
 
 const REJECTED_OFFSET_M = 0.25;
 const ALPHA = { near: 0.75, far: 0.08, dimmed: 0.3 };
