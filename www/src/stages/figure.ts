@@ -2,95 +2,11 @@
  * A figure: all that its components read, and what they can do. The page makes one of its state, an element that stands by itself
  * of its own; the components know neither, so a figure is written once.
  */
-import type { GroundTexture, WarpedPicture } from "../shared/calls";
+import type { WarpedPicture } from "../shared/calls";
 import type { ParamTree } from "../shared/paramTree";
-import type {
-  AdjacencyGraphs,
-  ClusterTrace,
-  CoplanarSets,
-  CorrectionTrace,
-  Correspondence,
-  DensePlanes,
-  Directions,
-  Facet,
-  FacetTrace,
-  GroupingTrace,
-  HalfPlane,
-  LineRecord,
-  MatchRecord,
-  RectangleTrace,
-  Refinement,
-  SceneInfo,
-  Segmentation,
-  SegmentMatching,
-  SideRecord,
-  SideTrace,
-  TerrainComparison,
-} from "../shared/records";
+import type { Correspondence, SceneInfo, SegmentMatching, SideTrace } from "../shared/records";
 import type { Selection } from "../shared/selection";
-
-/** What the stages have returned so far; arrays per view are empty until their stage has run. */
-export interface Results {
-  segments: Float32Array[];
-  supports: Float32Array[];
-  lines: Float64Array | null;
-  halfPlanes: HalfPlane[] | null;
-  /** How the terrain model that is known beforehand compares with the images. */
-  terrain: TerrainComparison | null;
-  coplanar: CoplanarSets | null;
-  adjacency: AdjacencyGraphs | null;
-  dense: DensePlanes | null;
-  facets: Facet[] | null;
-  /** The parameters that the facets were found with. */
-  madeWith: ParamTree | null;
-  glb: Uint8Array<ArrayBuffer> | null;
-  /** The models of the tiles that are done, as long as they are not joined. */
-  tileGlbs: readonly Uint8Array<ArrayBuffer>[];
-  ground: GroundTexture | null;
-  rejected: Float32Array[];
-  matching: MatchRecord | null;
-  records: LineRecord[];
-  stretches: Float64Array | null;
-  sides: SideRecord[];
-  grouping: GroupingTrace | null;
-  verification: FacetTrace | null;
-  refinement: Refinement | null;
-  regions: Segmentation[];
-  directions: Directions | null;
-  clusters: ClusterTrace[] | null;
-  rectangles: RectangleTrace | null;
-  /** What became of corrections by hand; the facets are the corrected ones then. */
-  corrected: CorrectionTrace | null;
-}
-
-export const NO_RESULTS: Results = {
-  segments: [],
-  supports: [],
-  lines: null,
-  halfPlanes: null,
-  terrain: null,
-  coplanar: null,
-  adjacency: null,
-  dense: null,
-  facets: null,
-  madeWith: null,
-  glb: null,
-  tileGlbs: [],
-  ground: null,
-  rejected: [],
-  matching: null,
-  records: [],
-  stretches: null,
-  sides: [],
-  grouping: null,
-  verification: null,
-  refinement: null,
-  regions: [],
-  directions: null,
-  clusters: null,
-  rectangles: null,
-  corrected: null,
-};
+import type { Results } from "./list";
 
 /** What the figures show of the selected segment or side, and what the core answered about it. */
 export interface SelectionDetail {

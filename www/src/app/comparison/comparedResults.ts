@@ -2,21 +2,13 @@
 import { computed } from "@preact/signals";
 import type { ParamTree } from "../../shared/paramTree";
 import type { Facet } from "../../shared/records";
+import { METHOD_WORDS, methodOf } from "../../stages/catalogue";
 import { slopedArea } from "../parts/facetArea";
 import { fieldText, paramName, paramSections } from "../settings/parameterForm";
 import type { KeptResult } from "../state/keptResult";
-import { type Method, methodOf } from "../state/methods";
 import { defaults, method, params } from "../state/parameters";
 import { mainResults } from "../state/results";
 import { stages } from "../state/stages";
-
-const METHOD_TITLES: Record<Method, string> = {
-  lines: "Lines",
-  rectangles: "Rectangles",
-  combined: "Combined",
-  coplanar: "Coplanar",
-  adjacency: "Adjacency",
-};
 
 /** What the present facets were found with, or the next ones will be. */
 const presentParams = computed(() => mainResults.value.madeWith ?? params.value);
@@ -24,7 +16,7 @@ export const presentTitle = computed(() => titleOf(presentParams.value));
 
 /** The method, and which parameter is not the default; of several, how many. */
 function titleOf(values: ParamTree): string {
-  const name = METHOD_TITLES[methodOf(values)];
+  const name = METHOD_WORDS[methodOf(values)].title;
   const changed = paramSections(defaults.value, values).flatMap(({ fields }) =>
     fields.filter((field) => field.changed),
   );

@@ -3,11 +3,11 @@ import "./corrections.css";
 import { signal, useSignalEffect } from "@preact/signals";
 import { useState } from "preact/hooks";
 import type { Correction, Facet, NotApplied, Vec3 } from "../../shared/records";
+import { STAGE_FACTS } from "../../stages/list";
 import { counted } from "../parts/counted";
 import { saveFile } from "../parts/saveFile";
 import { TextField } from "../parts/TextField";
 import { isBusy } from "../state/activity";
-import type { Tab } from "../state/methods";
 import { notify } from "../state/notices";
 import { mainResults } from "../state/results";
 import { scene } from "../state/scene";
@@ -35,9 +35,6 @@ interface Armed {
 }
 const armed = signal<Armed | null>(null);
 
-/** The tabs in which the model is corrected: edges are drawn in the photographs. */
-const SHOWN_IN: readonly Tab[] = ["model", "facets", "images"];
-
 export function Corrections() {
   const { facets } = mainResults.value;
   useSignalEffect(takeSecond);
@@ -48,7 +45,7 @@ export function Corrections() {
     window.addEventListener("keydown", onKeyDown);
     return () => window.removeEventListener("keydown", onKeyDown);
   });
-  if (facets === null || !SHOWN_IN.includes(tab.value)) {
+  if (facets === null || STAGE_FACTS[tab.value].isCorrected !== true) {
     return null;
   }
   const doubtful = doubtfulFacets(facets).length;

@@ -3,11 +3,10 @@ import "./images.css";
 import type { ComponentChildren } from "preact";
 import type { Vec2 } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
-import { Legend } from "../parts/Legend";
-import { followsSelection, showRejected, tab, withRejected, zoomToSelection } from "../state/viewState";
-import { ImageCanvas } from "./ImageCanvas";
-import { overlayOf } from "./overlays";
-import { type Mark, marksOf } from "./selectionMarks";
+import { followsSelection, zoomToSelection } from "../state/viewState";
+import type { Overlay } from "./drawing";
+import { FigureImage } from "./ImageRow";
+import type { Mark } from "./selectionMarks";
 import { ALL_VIEWS, ViewPicker } from "./ViewPicker";
 
 /** Something that is drawn in the views by clicks. */
@@ -20,13 +19,17 @@ export interface PlaceTool {
 
 interface Props {
   figure: Figure;
+  overlay: (view: number, figure: Figure) => Overlay;
+  /** What the tab itself switches, and what its colours mean. */
+  switches: ComponentChildren;
+  legend: ComponentChildren;
   /** Stands in their place as long as there are none. */
   empty: ComponentChildren;
   tool?: PlaceTool | undefined;
 }
 
-export function ImageViews({ figure, empty, tool }: Props) {
-  const { scene, images, selection, view: asked, act } = figure;
+export function ImageViews({ figure, overlay, switches, legend, empty, tool }: Props) {
+  const { scene, images, view: asked, act } = figure;
   const views = scene?.views ?? [];
   if (views.length === 0 || images.length === 0) {
     return <>{empty}</>;
@@ -36,24 +39,20 @@ export function ImageViews({ figure, empty, tool }: Props) {
     <div class="image-views">
       <div class="toolbar">
         <ViewPicker views={views} shown={asked} withAll show={act.showView} />
-        {tab.value === "segments" && <RejectedSwitch />}
+        {switches}
         {shown.length > 1 && <FollowSwitch />}
         <span class="grow" />
-        <Legend />
+        {legend}
       </div>
       <div class={`image-grid ${shown.length > 1 ? "many" : ""}`}>
         {shown.map((view) => (
-          <ImageCanvas
+          <FigureImage
             key={view}
+            figure={figure}
+            overlay={overlay}
             view={view}
-            name={views[view]?.name ?? ""}
-            image={images[view] as ImageBitmap}
-            overlay={overlayOf(tab.value, view, figure, withRejected.value)}
-            selection={selection}
-            marks={[...marksOf(selection, view, figure), ...(tool?.marks(view) ?? [])]}
+            marks={tool?.marks(view)}
             follows={followsSelection.value && shown.length > 1}
-            inText={figure.inText}
-            onPick={act.select}
             onPlace={tool?.onPlace && ((at, scale) => tool.onPlace?.(view, at, scale))}
           />
         ))}
@@ -73,21 +72,6 @@ function FollowSwitch() {
       }}
     >
       Zoom to selection
-    </button>
-  );
-}
-
-function RejectedSwitch() {
-  return (
-    <button
-      type="button"
-      aria-pressed={withRejected.value}
-      class="toggle"
-      onClick={() => {
-        showRejected(!withRejected.value);
-      }}
-    >
-      Rejected lines
     </button>
   );
 }

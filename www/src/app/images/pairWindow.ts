@@ -1,7 +1,7 @@
 /** The window of a pair of parallel lines in space, and the image lines inside it (W96 figures 10 and 11). */
 
 import type { PlaneTrace, Vec3 } from "../../shared/records";
-import type { Results } from "../../stages/figure";
+import type { Results } from "../../stages/list";
 import { lineEnds } from "../selection/selectionShapes";
 
 export interface PlaneWindow {

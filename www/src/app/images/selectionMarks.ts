@@ -7,7 +7,8 @@ import { REJECTED_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import type { Vec2, Vec3, ViewInfo } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { Figure, Results, SelectionDetail } from "../../stages/figure";
+import type { Figure, SelectionDetail } from "../../stages/figure";
+import type { Results } from "../../stages/list";
 import { type Shape, shapesOf } from "../selection/selectionShapes";
 import { windowOf } from "./pairWindow";
 

@@ -2,7 +2,7 @@
 import { LINE_STRIDE, REJECTED_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
 import type { Selection } from "../../shared/selection";
 import { formatSelection } from "../../shared/selection";
-import type { Tab } from "../state/methods";
+import type { Tab } from "../../stages/list";
 import { results } from "../state/results";
 import { scene } from "../state/scene";
 import { shownView, tab } from "../state/viewState";

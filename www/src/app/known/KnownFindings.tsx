@@ -1,5 +1,6 @@
 /** What the images say of the terrain model, the footprints and the point cloud that are known beforehand. */
 import type { CloudComparison, RegisterTrace, TerrainComparison } from "../../shared/records";
+import { STAGE_FACTS } from "../../stages/list";
 import { Links } from "../inspector/Inspector";
 import { counted } from "../parts/counted";
 import { cloudWords, FOOTPRINT_WORDS, outcomesOf, registerWords, terrainWords } from "../parts/knownText";
@@ -8,9 +9,10 @@ import { tab } from "../state/viewState";
 
 export function KnownFindings() {
   const { terrain, dense, verification } = results.value;
-  const register = tab.value === "facets" ? verification?.register : undefined;
-  const ground = tab.value === "facets" || tab.value === "halfplanes" ? terrain : null;
-  const cloud = tab.value === "facets" || tab.value === "dense" ? dense?.trace.point_cloud : undefined;
+  const { known = [] } = STAGE_FACTS[tab.value];
+  const register = known.includes("register") ? verification?.register : undefined;
+  const ground = known.includes("terrain") ? terrain : null;
+  const cloud = known.includes("cloud") ? dense?.trace.point_cloud : undefined;
   return (
     <>
       {ground !== null && <Terrain found={ground} />}

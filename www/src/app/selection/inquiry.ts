@@ -2,7 +2,8 @@
 import type { Args, CallName, Result } from "../../shared/calls";
 import type { Side, SideTrace } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import { NO_DETAIL, type Results, type Resumed, type SelectionDetail } from "../../stages/figure";
+import { NO_DETAIL, type Resumed, type SelectionDetail } from "../../stages/figure";
+import type { Results } from "../../stages/list";
 
 /** Whose selection it is, and whom it asks. */
 export interface Inquirer {

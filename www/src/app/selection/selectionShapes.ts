@@ -4,7 +4,7 @@ import { LINE_STRIDE } from "../../shared/flatArrays";
 import { edgesOfCorner, isVerifiedPlane, outlinesBefore } from "../../shared/proposed";
 import { densePlanesOf, type Segment3, type Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { Results } from "../../stages/figure";
+import type { Results } from "../../stages/list";
 import { fanRing } from "../../viewer/scene/fanRing";
 import { refinedFacets } from "./refinedBuildings";
 

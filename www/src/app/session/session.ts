@@ -4,6 +4,7 @@ import { Engine, EngineError, isFatal } from "../../core/engine";
 import { WorkerPool } from "../../core/workerPool";
 import type { Args, CallName, Result } from "../../shared/calls";
 import type { SceneInfo } from "../../shared/records";
+import { stagesOf } from "../../stages/catalogue";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions } from "../settings/loadOptions";
 import { paramsOf } from "../settings/parameterForm";
@@ -23,7 +24,6 @@ import {
 import { flightPlan, showTileFraction, tileRun } from "../tiles/flight";
 import { ActionQueue } from "./actionQueue";
 import { failureNotice } from "./failureNotice";
-import { stagesOf } from "./stageCatalogue";
 
 /** Whether the present worker holds the project's files, has the scene loaded, and was asked about them as they are wanted now. */
 const held = { files: false, scene: false, inspection: false, results: false };

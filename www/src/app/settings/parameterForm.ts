@@ -1,5 +1,6 @@
 /** The form of the parameters, made from whatever defaults the core gives: nothing is retyped here. */
 import type { ParamGroup, ParamTree, ParamValue } from "../../shared/paramTree";
+import { SECTION_TITLES } from "../../stages/catalogue";
 
 export interface ParamField {
   key: string;
@@ -29,25 +30,6 @@ const UNITS: readonly (readonly [string, string])[] = [
   ["_m", "m"],
   ["_s", "s"],
 ];
-
-const TITLES: Record<string, string> = {
-  segments: "Segments",
-  matching: "Matching",
-  adjustment: "Adjustment of the views",
-  lines3d: "3D lines",
-  coplanar: "Coplanar sets",
-  adjacency: "Adjacency graphs",
-  sweep: "Half-plane sweep",
-  dense: "Dense planes",
-  roof: "Grouping and facets",
-  "roof.refine": "Regularisation and refinement",
-  texture: "Texture",
-  "objectspace.oris": "Regions (ORIS)",
-  "objectspace.windows": "Windows",
-  "objectspace.directions": "Main directions",
-  "objectspace.clusters": "Clusters",
-  "objectspace.planes": "Planes",
-};
 
 /** Fields that are one of a few words. */
 const CHOICES: Record<string, readonly string[]> = {
@@ -116,7 +98,7 @@ function sectionsOf(path: string, defaults: ParamGroup, values: ParamGroup): Par
   const fields = own.map(([key, fallback]) => paramField(key, fallback, values[key] ?? fallback));
   const section = {
     path,
-    title: TITLES[path] ?? innerTitle(path),
+    title: SECTION_TITLES[path] ?? innerTitle(path),
     fields,
     changed: fields.filter(({ changed }) => changed).length,
   };
@@ -131,7 +113,7 @@ function sectionsOf(path: string, defaults: ParamGroup, values: ParamGroup): Par
 /** "Segments: edgels". */
 function innerTitle(path: string): string {
   const at = path.lastIndexOf(".");
-  const outer = TITLES[path.slice(0, at)];
+  const outer = SECTION_TITLES[path.slice(0, at)];
   const own = path.slice(at + 1).replaceAll("_", " ");
   return outer === undefined ? words(path.slice(at + 1)) : `${outer}: ${own}`;
 }
@@ -153,7 +135,7 @@ export function paramName(path: string, withUnit = true): string {
   const at = path.lastIndexOf(".");
   const [group, key] = [path.slice(0, at), path.slice(at + 1)];
   const { label, unit } = labelAndUnit(key);
-  return `${TITLES[group] ?? innerTitle(group)}: ${label}${unit === "" || !withUnit ? "" : ` (${unit})`}`;
+  return `${SECTION_TITLES[group] ?? innerTitle(group)}: ${label}${unit === "" || !withUnit ? "" : ` (${unit})`}`;
 }
 
 /** What differs from the defaults, by path: what a link carries. */

@@ -1,4 +1,6 @@
 /** Project on the left, the stage views in the middle, what they mean and parameters on the right. */
+
+import { FIGURES } from "../../stages/figures";
 import { Comparison } from "../comparison/Comparison";
 import { Corrections } from "../corrections/Corrections";
 import { AboutFigure } from "../figures/AboutFigure";
@@ -33,7 +35,11 @@ export function Workbench() {
         <StageRail />
       </main>
       <aside class="column details" aria-label="Details">
-        {tourStep.value !== null ? <TourPanel /> : images.value.length > 0 && <AboutFigure tab={tab.value} />}
+        {tourStep.value !== null ? (
+          <TourPanel />
+        ) : (
+          images.value.length > 0 && <AboutFigure of={FIGURES[tab.value]} />
+        )}
         {tourStep.value === null && images.value.length > 0 && <PageTakeAlong />}
         <Comparison />
         <KnownFindings />

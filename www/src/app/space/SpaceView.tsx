@@ -5,54 +5,38 @@ import { useEffect, useRef } from "preact/hooks";
 import { Box3, Vector3 } from "three";
 import { THEME_COLOURS } from "../../shared/palette";
 import type { Vec3 } from "../../shared/records";
-import { enlargement } from "../../stages/lines/uncertaintyLayer";
+import { tabsOf } from "../../stages/catalogue";
+import type { Tab } from "../../stages/list";
+import { PageLegend } from "../../stages/PageLegend";
+import { pageOf } from "../../stages/pages";
 import { cornersOf, cornersOfFacets, endsOfLines, withCameras } from "../../viewer/scene/bounds";
 import { GRID_STEP_M } from "../../viewer/scene/grid";
 import { warmupLayers } from "../../viewer/shaderWarmup";
 import { Viewer } from "../../viewer/viewer";
 import { presentTitle } from "../comparison/comparedResults";
-import { Legend } from "../parts/Legend";
+import { Choice } from "../parts/Choice";
 import { isBusy } from "../state/activity";
 import { keptResult } from "../state/keptResult";
-import type { Tab } from "../state/methods";
 import { notify } from "../state/notices";
 import { method } from "../state/parameters";
 import { preliminaryFacets, results } from "../state/results";
 import { scene } from "../state/scene";
 import { theme } from "../state/theme";
-import {
-  beforeGrowing,
-  camera,
-  select,
-  selection,
-  showBeforeGrowing,
-  standAt,
-  tab,
-} from "../state/viewState";
+import { camera, select, selection, standAt, tab } from "../state/viewState";
 import { useCornerHandles } from "./cornerHandles";
 import { canStandBeside, isBeside, standBeside, wantsBeside } from "./keptBeside";
-import { ModeLegend, ModeSwitches } from "./ModelModes";
-import { model, showsKeptFacets, useModels } from "./modelLayers";
-import { followResults, LAYERS, type LayerName, shownLayers, toggleLayer } from "./resultLayers";
+import { model, useModels } from "./modelLayers";
+import {
+  chosenLayers,
+  followResults,
+  LAYER_ROLES,
+  LAYERS,
+  seenLayers,
+  showsPreliminary,
+  toggleLayer,
+} from "./resultLayers";
 import { SpaceTools } from "./SpaceTools";
 import { Unmodelled } from "./Unmodelled";
-
-const LAYER_TITLES: Record<LayerName, string> = {
-  lines: "3D lines",
-  uncertainty: "Uncertainty",
-  fans: "Half-planes",
-  coplanar: "Coplanar sets",
-  adjacency: "Corners",
-  dense: "Dense planes",
-  groups: "Groups",
-  facets: "Facets",
-  model: "Model",
-  ground: "Ground",
-  cameras: "Cameras",
-};
-
-/** Layers that method "rectangles" does not fill. */
-const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "coplanar", "adjacency", "dense", "groups"];
 
 /** The viewer while it exists; the effects below wait for it. */
 const viewer = signal<Viewer | null>(null);
@@ -67,23 +51,18 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
     return () => window.removeEventListener("beforeprint", print);
   }, []);
   useLayers();
-  const isEmpty = layerIsEmpty(tab.value);
+  const { isEmpty: isTabEmpty, Switch } = pageOf(tab.value);
+  const isEmpty = isTabEmpty?.(results.value) === true && !showsPreliminary.value;
   return (
     <div class="space-view" hidden={hidden}>
       <div class="toolbar">
         <LayerSwitches />
-        {shownLayers.value[tab.value].includes("model") && <ModeSwitches />}
-        {tab.value === "lines" && <GrowingSwitch />}
+        <OfLayers part="Switch" />
+        {Switch !== undefined && <Switch />}
         {canStandBeside.value && <BesideSwitch />}
         <span class="grow" />
-        <Legend />
-        {shownLayers.value[tab.value].includes("model") && <ModeLegend />}
-        {shownLayers.value[tab.value].includes("uncertainty") && results.value.records.length > 0 && (
-          <p class="legend">
-            <span class="swatch merged" aria-hidden="true" />1 σ, drawn {enlargement(results.value.records)} ×
-            as large
-          </p>
-        )}
+        <PageLegend />
+        <OfLayers part="Legend" />
       </div>
       {isBeside.value && (
         <div class="halves" data-testid="halves">
@@ -128,45 +107,30 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
   );
 }
 
-/** B99 figures 5 and 7 against 6 and 8. */
-function GrowingSwitch() {
+/** What the layers that are switched on bring with them. */
+function OfLayers({ part }: { part: "Switch" | "Legend" }) {
   return (
-    <fieldset class="choice growing">
-      <legend class="visually-hidden">Before or after growing</legend>
-      {[true, false].map((before) => (
-        <button
-          key={String(before)}
-          type="button"
-          aria-pressed={beforeGrowing.value === before}
-          onClick={() => {
-            showBeforeGrowing(before);
-          }}
-        >
-          {before ? "Before growing" : "After"}
-        </button>
-      ))}
-    </fieldset>
+    <>
+      {chosenLayers.value.map((name) => {
+        const Part = LAYERS[name]?.[part];
+        return Part !== undefined && <Part key={name} />;
+      })}
+    </>
   );
 }
 
 /** The kept result beside the present one, or its outlines over it. */
 function BesideSwitch() {
   return (
-    <fieldset class="choice">
-      <legend class="visually-hidden">Where the kept result stands</legend>
-      {[true, false].map((beside) => (
-        <button
-          key={String(beside)}
-          type="button"
-          aria-pressed={wantsBeside.value === beside}
-          onClick={() => {
-            standBeside(beside);
-          }}
-        >
-          {beside ? "Side by side" : "Outlines over it"}
-        </button>
-      ))}
-    </fieldset>
+    <Choice
+      legend="Where the kept result stands"
+      choices={[
+        [true, "Side by side"],
+        [false, "Outlines over it"],
+      ]}
+      chosen={wantsBeside.value}
+      choose={standBeside}
+    />
   );
 }
 
@@ -180,13 +144,12 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
     return undefined;
   }
   try {
-    const made = new Viewer(canvas, THEME_COLOURS[theme.peek()], (picked) => {
-      select(picked);
-    });
+    const made = new Viewer(canvas, THEME_COLOURS[theme.peek()], select, LAYER_ROLES);
     made.onStand = standAt;
     const { clientWidth = 0, clientHeight = 0 } = canvas.closest(".stage-view") ?? {};
     made.prepareSize(clientWidth, Math.round(CANVAS_SHARE * clientHeight));
-    warmupLayers().forEach((layer, i) => {
+    const ofLayers = Object.values(LAYERS).flatMap(({ warm }) => warm?.() ?? []);
+    [...warmupLayers(), ...ofLayers].forEach((layer, i) => {
       made.showLayer(`warm ${i}`, false);
       made.setLayer(`warm ${i}`, layer);
     });
@@ -206,8 +169,6 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
   };
 }
 
-/** Whether the present tab shows the preliminary model. */
-const showsPreliminary = computed(() => tab.value === "model" && preliminaryFacets.value !== null);
 const lines = computed(() => results.value.lines);
 /** Changes when a stage has found the lines anew, but not when the model adds some. */
 const lineStage = computed(() => results.value.stretches ?? results.value.clusters);
@@ -237,20 +198,10 @@ function useLayers(): void {
     }
   });
   useSignalEffect(() => viewer.value?.setTheme(THEME_COLOURS[theme.value]));
+  useSignalEffect(() => viewer.value?.halve(isBeside.value ? ["kept", "keptModel"] : null));
   useSignalEffect(() => {
-    viewer.value?.halve(isBeside.value ? ["kept", "keptModel"] : null);
-    viewer.value?.showLayer("kept", !isBeside.value || showsKeptFacets.value);
-  });
-  useSignalEffect(() => {
-    for (const name of LAYERS) {
-      viewer.value?.showLayer(name, shownLayers.value[tab.value].includes(name));
-    }
-    const before = tab.value === "lines" && beforeGrowing.value;
-    viewer.value?.showLayer("stretches", before);
-    viewer.value?.showLayer("refinement", tab.value === "refinement");
-    viewer.value?.showLayer("preliminary", showsPreliminary.value);
-    if (before) {
-      viewer.value?.showLayer("lines", false);
+    for (const name of Object.keys(LAYERS)) {
+      viewer.value?.showLayer(name, seenLayers.value.includes(name));
     }
     viewer.value?.highlight(selection.value);
   });
@@ -260,7 +211,7 @@ function useLayers(): void {
 function fitView(): void {
   standAt(null);
   const centres = scene.value?.views.map(({ center }) => center) ?? [];
-  const areShown = shownLayers.value[tab.value].includes("cameras");
+  const areShown = chosenLayers.value.includes("cameras");
   viewer.value?.lookAt(areShown ? withCameras(pointsNow(), centres) : pointsNow());
 }
 
@@ -270,54 +221,29 @@ function middleNow(): Vec3 {
   return [x, -z, y];
 }
 
-/** Tabs about facets. */
-const FACET_TABS: readonly Tab[] = ["facets", "refinement", "rectangles"];
-
 /** What the present tab shows, in the viewer's frame. */
 function pointsNow(): Vector3[] {
   const { facets } = results.value;
   if (tab.value === "model" && model.value !== null) {
     return cornersOf(model.value.object);
   }
-  if (FACET_TABS.includes(tab.value) && facets !== null && facets.length > 0) {
+  if (pageOf(tab.value).shows?.includes("facets") && facets !== null && facets.length > 0) {
     return cornersOfFacets(facets);
   }
   return endsOfLines(lines.value ?? new Float64Array());
 }
 
-function layerIsEmpty(name: Tab): boolean {
-  const { halfPlanes, coplanar, adjacency, dense, grouping, facets } = results.value;
-  switch (name) {
-    case "lines":
-      return lines.value === null;
-    case "halfplanes":
-      return halfPlanes === null;
-    case "coplanar":
-      return coplanar === null;
-    case "adjacency":
-      return adjacency === null;
-    case "dense":
-      return dense === null;
-    case "groups":
-      return grouping === null;
-    case "refinement":
-      return results.value.refinement === null;
-    case "facets":
-    case "rectangles":
-      return facets === null;
-    case "model":
-      return (
-        results.value.glb === null && results.value.tileGlbs.length === 0 && preliminaryFacets.value === null
-      );
-    default:
-      return false;
-  }
+/** Where no tab of method "rectangles" shows a layer first that others do, it does not fill it. */
+function isOffered(name: string): boolean {
+  const isFirst = (one: Tab) => pageOf(one).shows?.includes(name) === true;
+  return (
+    method.value !== "rectangles" || tabsOf("rectangles").some(isFirst) || !tabsOf("combined").some(isFirst)
+  );
 }
 
 function LayerSwitches() {
-  const visible = shownLayers.value[tab.value];
-  const toggle = (name: LayerName) => () => {
-    toggleLayer(name, tab.value);
+  const toggle = (name: string) => () => {
+    toggleLayer(name);
     if (name === "cameras") {
       fitView();
     }
@@ -325,12 +251,19 @@ function LayerSwitches() {
   return (
     <fieldset class="choice layers">
       <legend class="visually-hidden">Layers</legend>
-      {LAYERS.filter((name) => method.value !== "rectangles" || !LAYERS_OF_LINES.includes(name)).map(
-        (name) => (
-          <button key={name} type="button" aria-pressed={visible.includes(name)} onClick={toggle(name)}>
-            {LAYER_TITLES[name]}
-          </button>
-        ),
+      {Object.entries(LAYERS).map(
+        ([name, { title }]) =>
+          title !== undefined &&
+          isOffered(name) && (
+            <button
+              key={name}
+              type="button"
+              aria-pressed={chosenLayers.value.includes(name)}
+              onClick={toggle(name)}
+            >
+              {title}
+            </button>
+          ),
       )}
     </fieldset>
   );

@@ -1,7 +1,7 @@
 /** Whether a kept result stands beside the present one in space, or its outlines over it. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import { pageOf } from "../../stages/pages";
 import { keptResult } from "../state/keptResult";
-import type { Tab } from "../state/methods";
 import { tab } from "../state/viewState";
 import { throughView } from "./Photograph";
 
@@ -13,12 +13,11 @@ export function standBeside(beside: boolean): void {
   wanted.value = beside;
 }
 
-/** Tabs that show what a kept result holds. */
-const TABS_OF_RESULTS: readonly Tab[] = ["facets", "refinement", "rectangles", "model"];
-
-export const canStandBeside = computed(
-  () => keptResult.value !== null && TABS_OF_RESULTS.includes(tab.value),
-);
+/** Only tabs that show what a kept result holds. */
+export const canStandBeside = computed(() => {
+  const { shows = [] } = pageOf(tab.value);
+  return keptResult.value !== null && (shows.includes("facets") || shows.includes("model"));
+});
 export const isBeside = computed(
   () => canStandBeside.value && wantsBeside.value && throughView.value === null,
 );

@@ -1,6 +1,7 @@
 /** The textured models of the 3D view: the present one, and the kept one beside it. */
 import { computed, type ReadonlySignal, type Signal, signal, useSignalEffect } from "@preact/signals";
 import { THEME_COLOURS } from "../../shared/palette";
+import { facetColours, modelMode } from "../../stages/model/ModelModes";
 import { buildModel, type ModelLayer } from "../../viewer/layers/model";
 import { modelOfParts } from "../../viewer/modelOfParts";
 import { cornersOf, cornersOfFacets } from "../../viewer/scene/bounds";
@@ -13,7 +14,6 @@ import { mainResults, preliminaryFacets } from "../state/results";
 import { theme } from "../state/theme";
 import { selection, tab } from "../state/viewState";
 import { isBeside } from "./keptBeside";
-import { facetColours, modelMode } from "./ModelModes";
 
 type Glb = Uint8Array<ArrayBuffer> | null;
 

@@ -1,183 +1,125 @@
 /** The layers of the 3D view, from the results: each is built anew when what it shows has changed, in a task of its own. */
-import { effect, type ReadonlySignal, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { Vector3 } from "three";
-import { LINE_STRIDE } from "../../shared/flatArrays";
-import type { Facet, GroupingTrace, Vec3 } from "../../shared/records";
-import type { Selection } from "../../shared/selection";
-import { buildAdjacency } from "../../stages/adjacency/adjacencyLayer";
-import { buildCoplanar } from "../../stages/coplanar/coplanarLayer";
-import { buildDense } from "../../stages/dense/denseLayer";
-import { buildGroups } from "../../stages/groups/groupsLayer";
-import { buildFans, buildTurning } from "../../stages/halfplanes/fansLayer";
-import { buildLines } from "../../stages/lines/linesLayer";
-import { buildStretches } from "../../stages/lines/stretchesLayer";
-import { buildUncertainty, enlargement } from "../../stages/lines/uncertaintyLayer";
-import { buildGround } from "../../stages/model/groundLayer";
-import { buildRefinement } from "../../stages/refinement/refinementLayer";
+import type { Facet, Vec3 } from "../../shared/records";
+import type { Tab } from "../../stages/list";
+import { pageOf, STAGE_LAYERS } from "../../stages/pages";
+import { FACET } from "../../stages/sample";
+import type { LayerState, Plan, SpaceLayer } from "../../stages/stagePage";
 import { buildCameras } from "../../viewer/layers/cameras";
 import { buildFacets } from "../../viewer/layers/facets";
 import { buildHighlight } from "../../viewer/layers/highlight";
 import { buildOutlines } from "../../viewer/layers/outlines";
-import { type Layer, unpicked } from "../../viewer/scene/layer";
+import { unpicked } from "../../viewer/scene/layer";
+import type { LayerRoles } from "../../viewer/scene/layerRoles";
 import type { Viewer } from "../../viewer/viewer";
 import { lineEnds, linesOfSelection, shapesOf } from "../selection/selectionShapes";
 import { keptResult } from "../state/keptResult";
-import type { Tab } from "../state/methods";
 import { preliminaryFacets, results } from "../state/results";
 import { images, scene } from "../state/scene";
-import { selectionDetail } from "../state/selectionDetail";
 import { selection, tab } from "../state/viewState";
 import { isBeside } from "./keptBeside";
-import { modelMode } from "./ModelModes";
+import { showsKeptFacets } from "./modelLayers";
 
-/** Layers that a person switches; "stretches" and "turning" follow other switches. */
-export const LAYERS = [
-  "lines",
-  "uncertainty",
-  "fans",
-  "coplanar",
-  "adjacency",
-  "dense",
-  "groups",
-  "facets",
-  "model",
-  "ground",
-  "cameras",
-] as const;
-export type LayerName = (typeof LAYERS)[number];
+/** Whether the present tab shows the preliminary model. */
+export const showsPreliminary = computed(() => tab.value === "model" && preliminaryFacets.value !== null);
 
-/** What each tab shows until a person switches something. */
-const chosen = signal<Record<Tab, readonly LayerName[]>>({
-  images: [],
-  segments: [],
-  matches: [],
-  lines: ["lines"],
-  halfplanes: ["lines", "fans"],
-  coplanar: ["coplanar"],
-  adjacency: ["adjacency"],
-  dense: ["dense"],
-  groups: ["groups"],
-  facets: ["facets"],
-  refinement: ["facets"],
-  regions: [],
-  directions: [],
-  clusters: [],
-  rectangles: ["facets", "lines"],
-  model: ["model", "ground"],
-});
-export const shownLayers: ReadonlySignal<Record<Tab, readonly LayerName[]>> = chosen;
+/** Those of the stages, and those of the page. */
+export const LAYERS: Readonly<Record<string, SpaceLayer>> = {
+  ...STAGE_LAYERS,
+  preliminary: {
+    plan: () => {
+      const facets = preliminaryFacets.value;
+      return facets && [() => unpicked(buildFacets(facets, false)), facets];
+    },
+    isSeen: () => showsPreliminary.value,
+  },
+  kept: {
+    plan: () => {
+      const kept = keptResult.value;
+      const beside = isBeside.value;
+      const build = (facets: readonly Facet[]) =>
+        beside ? unpicked(buildFacets(facets)) : buildOutlines(facets);
+      return kept && [() => build(kept.facets), kept, beside];
+    },
+    isSeen: () => !isBeside.value || showsKeptFacets.value,
+    isMeasured: true,
+    warm: () => buildOutlines([FACET]),
+  },
+  keptModel: { isSeen: () => true, isMeasured: true },
+  picked: {
+    plan: () => {
+      const shapes = shapesOf(selection.value, results.value).filter(({ role }) => role !== "before");
+      const areas = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
+      // A segment is in no place of space, but its line is.
+      const lines =
+        selection.value?.kind === "segment"
+          ? linesOfSelection(selection.value, results.peek()).map((line) => lineEnds(line, results.value))
+          : [];
+      const all = [...areas, ...lines.map((points) => ({ points, closed: false }))];
+      return all.length === 0 ? null : [() => buildHighlight(all), selection.value, results.value];
+    },
+    isSeen: () => true,
+    warm: () => buildHighlight([{ points: FACET.outer, closed: true }]),
+  },
+  cameras: {
+    title: "Cameras",
+    // Every photograph is drawn anew.
+    plan: ({ isChosen, middle }) => {
+      const views = scene.value?.views;
+      if (views === undefined || !isChosen) {
+        return null;
+      }
+      const [x, y, z] = middle();
+      const pictures = images.value;
+      return [() => buildCameras(views, new Vector3(x, y, z), pictures), views, pictures, x, y, z];
+    },
+    pickOrder: 11,
+  },
+};
 
-/** Shows a layer in a tab, or hides it there. */
-export function toggleLayer(name: LayerName, inTab: Tab): void {
-  const visible = chosen.value[inTab];
-  const next = visible.includes(name) ? visible.filter((one) => one !== name) : [...visible, name];
-  chosen.value = { ...chosen.value, [inTab]: next };
+/** What a person has switched, by tab. */
+const switched = signal<Partial<Record<Tab, readonly string[]>>>({});
+
+/** The layers whose switches are on in the present tab. */
+export const chosenLayers = computed(() => switched.value[tab.value] ?? pageOf(tab.value).shows ?? []);
+
+/** Shows a layer in the present tab, or hides it there. */
+export function toggleLayer(name: string): void {
+  const chosen = chosenLayers.value;
+  const next = chosen.includes(name) ? chosen.filter((one) => one !== name) : [...chosen, name];
+  switched.value = { ...switched.value, [tab.value]: next };
 }
 
-/** A function that makes a layer, and what it makes it of; null where there is nothing to show. */
-type Plan = readonly [build: () => Layer, ...of: unknown[]] | null;
+/** The layers that are seen now. */
+export const seenLayers = computed(() =>
+  Object.keys(LAYERS).filter((name) => {
+    const isChosen = chosenLayers.value.includes(name);
+    return LAYERS[name]?.isSeen?.(isChosen) ?? isChosen;
+  }),
+);
 
-/** The 3D lines of a selection, in the results of now. */
-const ownLines = (picked: Selection | null) => linesOfSelection(picked, results.peek());
+const namesOf = (isWanted: (layer: SpaceLayer) => boolean) =>
+  Object.keys(LAYERS).filter((name) => isWanted(LAYERS[name] as SpaceLayer));
+const orderOf = (name: string) => LAYERS[name]?.pickOrder ?? 0;
 
-/** What every layer shows now. `middle` is where cameras look at, local frame. */
-const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
-  lines: () => {
-    const { lines, records } = results.value;
-    return lines && [() => buildLines(lines, records, ownLines), lines, records];
-  },
-  uncertainty: () => {
-    const { lines, records } = results.value;
-    // Thousands of tubes that few look at: not before somebody does.
-    const isShown = shownLayers.value[tab.value].includes("uncertainty");
-    const has = isShown && lines !== null && records.length * LINE_STRIDE === lines.length;
-    return has ? [() => buildUncertainty(lines, records, enlargement(records), ownLines), records] : null;
-  },
-  fans: () => {
-    const { lines, halfPlanes, sides } = results.value;
-    const has = lines !== null && halfPlanes !== null;
-    return has ? [() => buildFans(halfPlanes, lines, sides), halfPlanes, lines] : null;
-  },
-  coplanar: () => {
-    const { lines, coplanar } = results.value;
-    return lines && coplanar && [() => buildCoplanar(coplanar, lines), coplanar, lines];
-  },
-  adjacency: () => {
-    const { adjacency } = results.value;
-    return adjacency && [() => buildAdjacency(adjacency), adjacency];
-  },
-  dense: () => {
-    const { dense } = results.value;
-    // Thousands of patches: not before somebody looks.
-    const isShown = shownLayers.value[tab.value].includes("dense");
-    return isShown && dense !== null ? [() => buildDense(dense), dense] : null;
-  },
-  groups: () => {
-    const { lines, grouping, facets } = results.value;
-    const build = () => buildGroups(grouping as GroupingTrace, lines as Float64Array, facets ?? []);
-    return lines && grouping && [build, grouping, lines, facets];
-  },
-  stretches: () => {
-    const { stretches } = results.value;
-    return stretches && [() => buildStretches(stretches), stretches];
-  },
-  refinement: () => {
-    const { refinement } = results.value;
-    return refinement && [() => buildRefinement(refinement), refinement];
-  },
-  kept: () => {
-    const kept = keptResult.value;
-    const beside = isBeside.value;
-    const build = (facets: readonly Facet[]) =>
-      beside ? unpicked(buildFacets(facets)) : buildOutlines(facets);
-    return kept && [() => build(kept.facets), kept, beside];
-  },
-  picked: () => {
-    const shapes = shapesOf(selection.value, results.value).filter(({ role }) => role !== "before");
-    const areas = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
-    // A segment is in no place of space, but its line is.
-    const lines =
-      selection.value?.kind === "segment"
-        ? ownLines(selection.value).map((line) => lineEnds(line, results.value))
-        : [];
-    const all = [...areas, ...lines.map((points) => ({ points, closed: false }))];
-    return all.length === 0 ? null : [() => buildHighlight(all), selection.value, results.value];
-  },
-  turning: () => {
-    const { side, theta } = selectionDetail.value;
-    const ends = side === null ? [] : lineEnds(side.line, results.value);
-    return side !== null && ends.length === 2 && tab.value === "halfplanes"
-      ? [() => buildTurning(ends as unknown as [Vec3, Vec3], side.side, theta), side, theta]
-      : null;
-  },
-  ground: () => {
-    const { ground } = results.value;
-    // Beside a model without photographs on it, it would only distract.
-    return modelMode.value === "textured" && ground !== null ? [() => buildGround(ground), ground] : null;
-  },
-  facets: () => {
-    const { facets } = results.value;
-    return facets && [() => buildFacets(facets), facets];
-  },
-  preliminary: () => {
-    const facets = preliminaryFacets.value;
-    return facets && [() => unpicked(buildFacets(facets, false)), facets];
-  },
-  cameras: (middle) => {
-    const views = scene.value?.views;
-    // Every photograph is drawn anew: not before somebody looks.
-    if (views === undefined || !shownLayers.value[tab.value].includes("cameras")) {
-      return null;
-    }
-    const [x, y, z] = middle();
-    const pictures = images.value;
-    return [() => buildCameras(views, new Vector3(x, y, z), pictures), views, pictures, x, y, z];
-  },
+export const LAYER_ROLES: LayerRoles = {
+  picked: namesOf(({ pickOrder }) => pickOrder !== undefined).sort((a, b) => orderOf(a) - orderOf(b)),
+  measured: namesOf(({ isMeasured }) => isMeasured === true),
+  cut: namesOf(({ isCut }) => isCut === true),
 };
 
 /** Keeps the viewer's layers as the results say, until the returned function is called. */
 export function followResults(viewer: () => Viewer | null, middle: () => Vec3): () => void {
-  const ends = Object.entries(PLANS).map(([name, plan]) => follow(name, viewer, () => plan(middle)));
+  const ends = Object.entries(LAYERS).flatMap(([name, { plan }]) => {
+    const state: LayerState = {
+      get isChosen() {
+        return chosenLayers.value.includes(name);
+      },
+      middle,
+    };
+    return plan === undefined ? [] : [follow(name, viewer, () => plan(state))];
+  });
   return () => {
     for (const end of ends) {
       end();

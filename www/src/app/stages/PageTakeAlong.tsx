@@ -1,17 +1,18 @@
 /** What can be taken along of the view that is shown. */
+
+import { FIGURES } from "../../stages/figures";
 import { pageFigure } from "../selection/selectionQueries";
 import { tab } from "../state/viewState";
 import { TakeAlong } from "../takeAlong/TakeAlong";
-import { ROWS } from "../takeAlong/tables";
 
 export function PageTakeAlong() {
   const name = tab.value;
   return (
     <section class="panel" aria-label="Take along">
       <TakeAlong
-        tab={name}
+        of={FIGURES[name]}
         name={name}
-        rows={() => ROWS[name](pageFigure())}
+        rows={() => FIGURES[name].rows(pageFigure())}
         body={shown}
         link={() => location.href}
       />

@@ -1,14 +1,13 @@
 /** The stages in order: run, cancel, progress, time and counts. */
 
 import "./stages.css";
-import type { StageName } from "../../shared/stages";
+import { mainTabOf, stageWords } from "../../stages/catalogue";
+import { STAGE_FACTS } from "../../stages/list";
 import { KeepResult } from "../comparison/Comparison";
 import { counted } from "../parts/counted";
 import { cancel } from "../session/session";
-import { stageWords } from "../session/stageCatalogue";
 import { runAll, runTo } from "../session/stageRuns";
 import { isBusy, phase } from "../state/activity";
-import { mainTabOf } from "../state/methods";
 import { files, hasPhotographsOnly } from "../state/project";
 import { freshStages, type StageState, type StageStatus, stages } from "../state/stages";
 import { showTab } from "../state/viewState";
@@ -149,17 +148,9 @@ function countsText({ counts, seconds }: StageState): string {
 /** What the stage is for, counted; the rest stands in the tooltip. */
 function mainCount({ name, counts }: StageState): string {
   const entries = Object.entries(counts);
-  const [what, count] = entries.find(([one]) => one === MAIN_COUNTS[name]) ?? entries[0] ?? [];
+  const [what, count] = entries.find(([one]) => one === STAGE_FACTS[name].mainCount) ?? entries[0] ?? [];
   return what === undefined || count === undefined ? "" : counted(count, what.replaceAll("_", " "));
 }
-
-const MAIN_COUNTS: Partial<Record<StageName, string>> = {
-  segments: "segments",
-  halfplanes: "half-planes",
-  regions: "regions",
-  directions: "pairs of directions",
-  model: "textured faces",
-};
 
 function totalTime(all: readonly StageState[]): string {
   const seconds = all.reduce((sum, stage) => sum + (stage.seconds ?? 0), 0);

@@ -1,93 +1,58 @@
 /** The tabs, and below them either images with overlays or the 3D view, above the figure's own laboratory. */
 import "./stages.css";
-import type { ComponentType } from "preact";
 import { useRef } from "preact/hooks";
-import { AdjacencyLab } from "../../stages/adjacency/AdjacencyLab";
-import { ClusterLab } from "../../stages/clusters/ClusterLab";
-import { CoplanarLab } from "../../stages/coplanar/CoplanarLab";
-import { DenseLab } from "../../stages/dense/DenseLab";
-import { DirectionLab } from "../../stages/directions/DirectionLab";
-import { FacetLab } from "../../stages/facets/FacetLab";
-import type { Figure } from "../../stages/figure";
-import { SimLab } from "../../stages/halfplanes/SimLab";
-import { GroupLab, LineLab } from "../../stages/lines/LineLab";
-import { PointLab } from "../../stages/matches/PointLab";
-import { RectangleLab } from "../../stages/rectangles/RectangleLab";
-import { RefinementLab } from "../../stages/refinement/RefinementLab";
+import { tabsOf, tabTitle } from "../../stages/catalogue";
+import { FIGURES } from "../../stages/figures";
+import { PageLegend } from "../../stages/PageLegend";
+import { pageOf } from "../../stages/pages";
+import type { FigureView } from "../../stages/stageFigure";
 import { isCorrecting } from "../corrections/drawn";
 import { FlightProgress } from "../flight/FlightProgress";
-import { Filmstrip } from "../images/Filmstrip";
+import type { Overlay } from "../images/drawing";
 import { ImageViews } from "../images/ImageViews";
 import { pageFigure } from "../selection/selectionQueries";
 import { SpaceView } from "../space/SpaceView";
-import { TABS, type Tab } from "../state/methods";
 import { method } from "../state/parameters";
 import { images } from "../state/scene";
-import { showTab, tab } from "../state/viewState";
+import { showTab, tab, withRejected } from "../state/viewState";
 import { EmptyStage } from "./EmptyStage";
 import { edgeTool } from "./edgeTool";
 
-const TITLES: Record<Tab, string> = {
-  images: "Images",
-  segments: "Segments",
-  matches: "Matches",
-  lines: "3D lines",
-  halfplanes: "Half-planes",
-  coplanar: "Coplanar sets",
-  adjacency: "Adjacency",
-  dense: "Dense planes",
-  groups: "Groups",
-  facets: "Facets",
-  refinement: "Refinement",
-  regions: "Regions",
-  directions: "Directions",
-  clusters: "Clusters",
-  rectangles: "Rectangles",
-  model: "Model",
-};
-
-/** Tabs that show images; the others show space. */
-const IMAGE_TABS: readonly Tab[] = ["images", "segments", "matches", "regions", "directions", "clusters"];
-
-/** What stands below the images or the space of a tab. */
-const LABS: Partial<Record<Tab, ComponentType<{ figure: Figure }>>> = {
-  matches: PointLab,
-  lines: LineLab,
-  halfplanes: SimLab,
-  coplanar: CoplanarLab,
-  adjacency: AdjacencyLab,
-  dense: DenseLab,
-  groups: GroupLab,
-  facets: FacetLab,
-  refinement: RefinementLab,
-  directions: DirectionLab,
-  clusters: ClusterLab,
-  rectangles: RectangleLab,
-  model: Filmstrip,
-};
+const NO_OVERLAY: Overlay = { segments: null, supports: null };
 
 /** Drawn anew with whatever of the page's state changes; the tabs and the space are not. */
 function PageImages() {
   const figure = pageFigure();
   const tool = tab.value === "images" && isCorrecting.value ? edgeTool(figure) : undefined;
-  return <ImageViews figure={figure} empty={<EmptyStage />} tool={tool} />;
+  const { overlay } = FIGURES[tab.value];
+  const { Switch } = pageOf(tab.value);
+  return (
+    <ImageViews
+      figure={figure}
+      overlay={(view) => overlay?.(view, figure, withRejected.value) ?? NO_OVERLAY}
+      switches={Switch !== undefined && <Switch />}
+      legend={<PageLegend />}
+      empty={<EmptyStage />}
+      tool={tool}
+    />
+  );
 }
 
-function PageLab({ Lab }: { Lab: ComponentType<{ figure: Figure }> }) {
+function PageLab({ Lab }: { Lab: FigureView }) {
   return <Lab figure={pageFigure()} />;
 }
 
 export function StageView() {
   const list = useRef<HTMLDivElement>(null);
-  const isImageTab = IMAGE_TABS.includes(tab.value);
-  const names: readonly Tab[] = TABS[method.value];
-  const Lab = images.value.length > 0 ? LABS[tab.value] : undefined;
+  const isImageTab = pageOf(tab.value).shows === undefined;
+  const names = tabsOf(method.value);
+  const Lab = images.value.length > 0 ? FIGURES[tab.value].Lab : undefined;
   const onKeyDown = (event: KeyboardEvent) => {
     const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (step !== 0) {
       event.preventDefault();
       const next = (names.indexOf(tab.value) + step + names.length) % names.length;
-      showTab(names[next] as Tab);
+      showTab(names[next] ?? tab.value);
       (list.current?.children[next] as HTMLElement | undefined)?.focus();
     }
   };
@@ -114,7 +79,7 @@ export function StageView() {
               showTab(name);
             }}
           >
-            {TITLES[name]}
+            {tabTitle(name)}
           </button>
         ))}
       </div>
@@ -123,7 +88,7 @@ export function StageView() {
         {isImageTab && <PageImages />}
         <SpaceView hidden={isImageTab} />
         {Lab !== undefined && (
-          <section class="lab" aria-label={`${TITLES[tab.value]}: figure`}>
+          <section class="lab" aria-label={`${tabTitle(tab.value)}: figure`}>
             <PageLab Lab={Lab} />
           </section>
         )}

@@ -1,15 +1,14 @@
 /** What a reader can take along: the figure as a picture, its numbers, its paper, and a link to its state. */
 import "./takeAlong.css";
 import { useState } from "preact/hooks";
-import { FIGURES } from "../figures/AboutFigure";
+import type { FigureText } from "../figures/AboutFigure";
 import { saveFile } from "../parts/saveFile";
-import type { Tab } from "../state/methods";
 import { citationOf } from "./citation";
 import { pngOf, svgOf } from "./pictures";
-import { csvOf, type Row } from "./tables";
+import { csvOf, type Row } from "./rows";
 
 interface Props {
-  tab: Tab;
+  of: FigureText;
   /** Of the files. */
   name: string;
   /** The numbers behind it. */
@@ -23,12 +22,11 @@ interface Props {
 /** What is shown below the buttons to be copied. */
 type Shown = { label: string; text: string } | null;
 
-export function TakeAlong({ tab, name, rows, body, link }: Props) {
+export function TakeAlong({ of, name, rows, body, link }: Props) {
   const [shown, show] = useState<Shown>(null);
-  const { title } = FIGURES[tab];
   const svg = () => {
     const root = body();
-    return root === null ? null : svgOf(root, title);
+    return root === null ? null : svgOf(root, of.title);
   };
   const save = (ending: string, type: string, content: string | Blob | null) => {
     if (content !== null) {
@@ -58,7 +56,7 @@ export function TakeAlong({ tab, name, rows, body, link }: Props) {
         <button type="button" onClick={() => save("json", "application/json", data())}>
           JSON
         </button>
-        <button type="button" onClick={() => show({ label: "BibTeX", text: citationOf(tab) })}>
+        <button type="button" onClick={() => show({ label: "BibTeX", text: citationOf(of) })}>
           Cite
         </button>
         <button type="button" onClick={() => show({ label: "Link", text: link() })}>

@@ -1,6 +1,5 @@
 /** Whom to cite for a figure: the paper, and the section where it stands. */
-import { FIGURES } from "../figures/AboutFigure";
-import type { Tab } from "../state/methods";
+import type { FigureText } from "../figures/AboutFigure";
 
 const PAPERS = {
   B99: (note: string) => `@inproceedings{Baillard1999,
@@ -23,8 +22,7 @@ const PAPERS = {
 } as const;
 
 /** As BibTeX; sections and figures are the note, as are other works that the figure draws on. */
-export function citationOf(tab: Tab): string {
-  const { title, source } = FIGURES[tab];
+export function citationOf({ title, source }: Pick<FigureText, "title" | "source">): string {
   const parts = source.split(/; (?=B99|W96)/);
   const cited = parts.map((part) => {
     const paper = part.startsWith("W96") ? "W96" : "B99";

@@ -1,5 +1,7 @@
 /** The guided tour: eleven steps through B99 and one through W96, in the views themselves, on the demo scene. */
 import { isRejected } from "../../shared/records";
+import type { Method } from "../../shared/stages";
+import type { Tab } from "../../stages/list";
 import { counted } from "../parts/counted";
 import { degreesOf, percentText } from "../parts/numberText";
 import { REJECTION_WORDS } from "../parts/reasonText";
@@ -9,7 +11,6 @@ import type { Turn } from "../session/actionQueue";
 import { actions } from "../session/session";
 import { chooseMethod, runEverything } from "../session/stageRuns";
 import { throughView } from "../space/Photograph";
-import type { Method, Tab } from "../state/methods";
 import { method, params } from "../state/parameters";
 import { files, isDemo } from "../state/project";
 import { results } from "../state/results";

@@ -10,7 +10,8 @@ import { LINE_STRIDE } from "../../shared/flatArrays";
 import { category } from "../../shared/palette";
 import type { ClusterTrace, Directions, Vec2 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { Figure, Results } from "../figure";
+import type { Figure } from "../figure";
+import type { Results } from "../list";
 
 /** Figures 7 and 8: image lines of one direction in the plane across it, and the clusters that description length chose. */
 export function ClusterLab({ figure }: { figure: Figure }) {

@@ -5,9 +5,7 @@ import { planesOfCorner } from "../../../src/app/inspector/cornerRows";
 import type { Related, Row } from "../../../src/app/inspector/rowLinks";
 import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
 import { siblingsOf } from "../../../src/app/inspector/siblings";
-import { presentEntries } from "../../../src/app/parts/Legend";
 import { shapesOf } from "../../../src/app/selection/selectionShapes";
-import { TABS } from "../../../src/app/state/methods";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
 import { cornerParts } from "../../../src/app/tour/examples";
@@ -23,6 +21,8 @@ import {
   type SpaceEdge,
 } from "../../../src/shared/records";
 import { formatSelection, parseSelection } from "../../../src/shared/selection";
+import { tabsOf } from "../../../src/stages/catalogue";
+import { presentEntries } from "../../../src/stages/PageLegend";
 
 const edgeInImage = (far: [number, number], direction: [number, number], region: number) => ({
   segment: 0,
@@ -226,8 +226,8 @@ describe("a corner in space", () => {
     show();
     showTab("adjacency");
     expect(presentEntries().map(([colour]) => colour)).toEqual(["matched", "unmatched", "set"]);
-    expect(TABS.adjacency).toContain("adjacency");
-    expect(TABS.adjacency).not.toContain("halfplanes");
+    expect(tabsOf("adjacency")).toContain("adjacency");
+    expect(tabsOf("adjacency")).not.toContain("halfplanes");
     expect(cornerParts({ adjacency: ADJACENCY }, 0)).toEqual({ views: 3, edges: 2, planes: 2 });
     expect(cornerParts({ adjacency: ADJACENCY }, 1)?.planes).toBe(1);
     expect(cornerParts({ adjacency: ADJACENCY }, 5)).toBeNull();

@@ -2,10 +2,8 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { Related, Row } from "../../../src/app/inspector/rowLinks";
 import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
-import { presentEntries } from "../../../src/app/parts/Legend";
 import { setAt, shownSets } from "../../../src/app/selection/coplanarPlan";
 import { linesOfSelection, shapesOf } from "../../../src/app/selection/selectionShapes";
-import { TABS } from "../../../src/app/state/methods";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
 import { coplanarSetParts } from "../../../src/app/tour/examples";
@@ -19,6 +17,8 @@ import {
   isRejected,
 } from "../../../src/shared/records";
 import { formatSelection, parseSelection } from "../../../src/shared/selection";
+import { tabsOf } from "../../../src/stages/catalogue";
+import { presentEntries } from "../../../src/stages/PageLegend";
 
 const square = (x: number, side: number): CoplanarSet["polygon"] => [
   [x, 0, 5],
@@ -155,8 +155,8 @@ describe("sets of coplanar lines", () => {
     show();
     showTab("coplanar");
     expect(presentEntries().map(([colour]) => colour)).toEqual(["grown", "set", "unmatched"]);
-    expect(TABS.coplanar).toContain("coplanar");
-    expect(TABS.coplanar).not.toContain("halfplanes");
+    expect(tabsOf("coplanar")).toContain("coplanar");
+    expect(tabsOf("coplanar")).not.toContain("halfplanes");
   });
 
   it("are a step of the tour where a side was moved", () => {

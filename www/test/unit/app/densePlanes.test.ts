@@ -4,10 +4,8 @@ import { slopeSigma } from "../../../src/app/inspector/densePlaneRows";
 import type { Related, Row } from "../../../src/app/inspector/rowLinks";
 import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
 import { frameOf } from "../../../src/app/parts/charts";
-import { presentEntries } from "../../../src/app/parts/Legend";
 import { areasOf, equalScales, planeAt, squaresAt } from "../../../src/app/selection/densePlan";
 import { shapesOf } from "../../../src/app/selection/selectionShapes";
-import { methodOfFacet } from "../../../src/app/space/ModelModes";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
 import {
@@ -20,6 +18,8 @@ import {
   rectanglesOf,
 } from "../../../src/shared/records";
 import { formatSelection, parseSelection } from "../../../src/shared/selection";
+import { methodOfFacet } from "../../../src/stages/model/ModelModes";
+import { presentEntries } from "../../../src/stages/PageLegend";
 
 const RING: DensePlane["ring"] = [
   [0, 0, 5],

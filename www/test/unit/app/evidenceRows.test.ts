@@ -2,11 +2,11 @@ import { afterEach, describe, expect, it } from "vitest";
 import { evidenceRow } from "../../../src/app/inspector/evidenceRows";
 import type { Bars, Row } from "../../../src/app/inspector/rowLinks";
 import { rowsOf } from "../../../src/app/inspector/selectionRows";
-import { presentEntries } from "../../../src/app/parts/Legend";
 import { facetRejectionWords } from "../../../src/app/parts/reasonText";
 import { NO_RESULTS, type Results, restoreResults } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
 import type { Evidence, Facet, FacetTrace, LineRecord } from "../../../src/shared/records";
+import { presentEntries } from "../../../src/stages/PageLegend";
 
 const evidence = (prior: number, terms: Record<string, [value: number, nats: number]>): Evidence => ({
   prior,

@@ -1,5 +1,4 @@
 import { describe, expect, it } from "vitest";
-import { firstStageOf, stagesOf } from "../../../src/app/session/stageCatalogue";
 import {
   changedParams,
   type ParamField,
@@ -10,6 +9,7 @@ import {
   withParam,
 } from "../../../src/app/settings/parameterForm";
 import type { ParamTree } from "../../../src/shared/paramTree";
+import { firstStageOf, stagesOf } from "../../../src/stages/catalogue";
 
 const DEFAULTS = {
   segments: { min_length_px: 15, area_m2: 2, closed: true },

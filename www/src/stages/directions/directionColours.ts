@@ -1,7 +1,7 @@
 /** The colours of image lines by the main direction that they follow. */
 
 import { category } from "../../shared/palette";
-import type { Figure } from "../../stages/figure";
+import type { Figure } from "../figure";
 
 /** A right angle: from the first direction to the other. */
 const HALF = Math.PI / 2;

@@ -1,13 +1,16 @@
 /** How the model looks in the 3D view, and what its colours mean. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import { Choice } from "../../app/parts/Choice";
+import { counted } from "../../app/parts/counted";
+import { Legend } from "../../app/parts/Legend";
+import { keptResult } from "../../app/state/keptResult";
+import { method } from "../../app/state/parameters";
+import { mainResults } from "../../app/state/results";
 import { METHOD_COLOURS } from "../../shared/palette";
 import { densePlanesOf, type Facet, rectanglesOf } from "../../shared/records";
+import { METHODS, type Method } from "../../shared/stages";
 import type { ModelMode } from "../../viewer/layers/model";
-import { counted } from "../parts/counted";
-import { keptResult } from "../state/keptResult";
-import type { Method } from "../state/methods";
-import { method } from "../state/parameters";
-import { mainResults } from "../state/results";
+import { METHOD_WORDS } from "../catalogue";
 
 const chosen = signal<ModelMode>("textured");
 export const modelMode: ReadonlySignal<ModelMode> = chosen;
@@ -19,14 +22,6 @@ const MODES: readonly (readonly [ModelMode, string])[] = [
   ["normals", "Normals"],
   ["method", "By method"],
 ];
-
-const METHOD_TITLES: Record<Method, string> = {
-  lines: "Lines (B99)",
-  rectangles: "Rectangles (W96)",
-  combined: "Both",
-  coplanar: "Coplanar lines (B99 2)",
-  adjacency: "Corners (B99 2)",
-};
 
 /** The method that proposed a facet's plane; where both ran, both may have. */
 export function methodOfFacet(facet: Pick<Facet, "half_planes" | "proposals">, ran: Method): Method {
@@ -43,43 +38,27 @@ export function facetColours(facets: readonly Facet[] | null, ran: Method): stri
 
 export function ModeSwitches() {
   return (
-    <fieldset class="choice">
-      <legend class="visually-hidden">Appearance</legend>
-      {MODES.map(([name, title]) => (
-        <button
-          key={name}
-          type="button"
-          aria-pressed={modelMode.value === name}
-          onClick={() => {
-            chosen.value = name;
-          }}
-        >
-          {title}
-        </button>
-      ))}
-    </fieldset>
+    <Choice
+      legend="Appearance"
+      choices={MODES}
+      chosen={modelMode.value}
+      choose={(mode) => {
+        chosen.value = mode;
+      }}
+    />
   );
 }
 
 /** The numbers of facets that each method made. */
 const made = computed(() => {
   const methods = (mainResults.value.facets ?? []).map((facet) => methodOfFacet(facet, method.value));
-  const names = (Object.keys(METHOD_TITLES) as Method[]).filter(
-    (name) => name === "lines" || name === "rectangles" || method.value === name,
-  );
+  const names = METHODS.filter((name) => name === "lines" || name === "rectangles" || method.value === name);
   return names.map((name) => [name, methods.filter((one) => one === name).length] as const);
 });
 
 export function ModeLegend() {
   if (modelMode.value === "normals") {
-    return (
-      <ul class="legend" aria-label="Colours">
-        <li>
-          <span class="swatch normals" aria-hidden="true" />
-          hue: azimuth, saturation: slope
-        </li>
-      </ul>
-    );
+    return <Legend entries={[["normals", "hue: azimuth, saturation: slope"]]} />;
   }
   if (modelMode.value !== "method") {
     return null;
@@ -90,7 +69,7 @@ export function ModeLegend() {
       {made.value.map(([name, count]) => (
         <li key={name}>
           <span class={`swatch by-${name}`} aria-hidden="true" />
-          {METHOD_TITLES[name]}: {counted(count, "facets")}
+          {METHOD_WORDS[name].legend}: {counted(count, "facets")}
         </li>
       ))}
       {kept !== null && (
