@@ -102,6 +102,11 @@ export function firstStageOf(path: string, stageNames: readonly StageName[]): nu
   return first < 0 ? stageNames.length : first;
 }
 
+/** Does a stage of the method read the parameter at `path`, or a part of that group? */
+export function isReadBy(method: Method, path: string): boolean {
+  return stagesOf(method).some((name) => reads(BY_NAME.get(name) as CoreStage, path));
+}
+
 function reads(stage: CoreStage, path: string): boolean {
   return stage.reads.some((read) => isWithin(path, read) || isWithin(read, path));
 }

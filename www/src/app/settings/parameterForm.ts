@@ -1,6 +1,7 @@
-/** The form of the parameters, made from whatever defaults the core gives: nothing is retyped here. */
+/** The form of the parameters, made from the core's own defaults, of what the stages of the method read. */
 import type { ParamGroup, ParamTree, ParamValue } from "../../shared/paramTree";
-import { SECTION_TITLES } from "../../stages/catalogue";
+import type { Method } from "../../shared/stages";
+import { isReadBy, methodOf, SECTION_TITLES } from "../../stages/catalogue";
 
 export interface ParamField {
   key: string;
@@ -36,25 +37,6 @@ const CHOICES: Record<string, readonly string[]> = {
   acceptance: ["printed", "posterior", "both"],
 };
 
-/** The groups that a method reads; "combined" reads all. */
-const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
-  lines: [
-    "segments",
-    "matching",
-    "adjustment",
-    "lines3d",
-    "coplanar",
-    "adjacency",
-    "sweep",
-    "dense",
-    "roof",
-    "texture",
-  ],
-  coplanar: ["segments", "matching", "adjustment", "lines3d", "roof", "texture"],
-  adjacency: ["segments", "matching", "adjustment", "lines3d", "roof", "texture"],
-  rectangles: ["objectspace", "texture"],
-};
-
 /**
  * What a person most often wants to change, by what it does to the result, and between which values in which steps it is
  * dragged; all else stands in its stage's section.
@@ -84,16 +66,18 @@ export function wantedFields(
   });
 }
 
-/** One section a group, groups inside groups apart, in the core's order; only what the method reads. */
+/** One section a group, groups inside groups apart, in the core's order; only what a stage of the method reads. */
 export function paramSections(defaults: ParamTree, values: ParamTree): ParamSection[] {
-  const groups = GROUPS_OF_METHOD[String(values["method"] ?? "lines")];
+  const method = methodOf(values);
   return Object.entries(defaults)
-    .filter(([name, fallback]) => isGroup(fallback) && (groups?.includes(name) ?? true))
-    .flatMap(([name, fallback]) => sectionsOf(name, fallback, values[name] ?? {}));
+    .filter(([, fallback]) => isGroup(fallback))
+    .flatMap(([name, fallback]) => sectionsOf(method, name, fallback, values[name] ?? {}));
 }
 
-function sectionsOf(path: string, defaults: ParamGroup, values: ParamGroup): ParamSection[] {
-  const own = Object.entries(defaults).filter(([, value]) => !isGroup(value));
+function sectionsOf(method: Method, path: string, defaults: ParamGroup, values: ParamGroup): ParamSection[] {
+  const own = Object.entries(defaults).filter(
+    ([key, value]) => !isGroup(value) && isReadBy(method, `${path}.${key}`),
+  );
   const inner = Object.entries(defaults).filter(([, value]) => isGroup(value));
   const fields = own.map(([key, fallback]) => paramField(key, fallback, values[key] ?? fallback));
   const section = {
@@ -105,7 +89,7 @@ function sectionsOf(path: string, defaults: ParamGroup, values: ParamGroup): Par
   return [
     ...(fields.length > 0 ? [section] : []),
     ...inner.flatMap(([key, group]) =>
-      sectionsOf(`${path}.${key}`, group as ParamGroup, (values[key] ?? group) as ParamGroup),
+      sectionsOf(method, `${path}.${key}`, group as ParamGroup, (values[key] ?? group) as ParamGroup),
     ),
   ];
 }
