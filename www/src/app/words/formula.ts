@@ -194,7 +194,7 @@ function atom(words: Words): MathNode {
   if (operator !== undefined) {
     return { tag: "mo", text: operator, children: [] };
   }
-  if (/^[−-]?\d[\d.]*( ?[\d.])*$/.test(word)) {
+  if (/^[−-]?\d[\d.]*°?$/.test(word)) {
     return { tag: "mn", text: word.replace("-", "−"), children: [] };
   }
   if (NAMES.has(word)) {
