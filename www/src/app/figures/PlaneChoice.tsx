@@ -1,4 +1,5 @@
 /** Which of several planes, or buildings, a figure shows. */
+import { Choice } from "../parts/Choice";
 
 export function PlaneChoice({
   names,
@@ -23,14 +24,5 @@ export function PlaneChoice({
       </label>
     );
   }
-  return (
-    <fieldset class="choice">
-      <legend class="visually-hidden">Plane</legend>
-      {names.map((name, i) => (
-        <button key={name} type="button" aria-pressed={shown === i} onClick={() => onShow(i)}>
-          {name}
-        </button>
-      ))}
-    </fieldset>
-  );
+  return <Choice legend="Plane" choices={names.map((name, i) => [i, name])} chosen={shown} choose={onShow} />;
 }

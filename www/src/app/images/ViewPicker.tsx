@@ -1,5 +1,6 @@
 /** Which view is shown. */
 import type { ViewInfo } from "../../shared/records";
+import { Choice } from "../parts/Choice";
 
 /** All views side by side. */
 export const ALL_VIEWS = -1;
@@ -14,20 +15,13 @@ interface Props {
 
 /** One button a view, and before them one for all, unless there is no room for them. */
 export function ViewPicker({ views, shown, withAll, show }: Props) {
-  const pressed = withAll ? shown : Math.max(0, shown);
+  const own = views.map(({ name }, view) => [view, name] as const);
   return (
-    <fieldset class="choice">
-      <legend class="visually-hidden">View</legend>
-      {withAll && (
-        <button type="button" aria-pressed={pressed === ALL_VIEWS} onClick={() => show(ALL_VIEWS)}>
-          All
-        </button>
-      )}
-      {views.map(({ name }, view) => (
-        <button key={name} type="button" aria-pressed={pressed === view} onClick={() => show(view)}>
-          {name}
-        </button>
-      ))}
-    </fieldset>
+    <Choice
+      legend="View"
+      choices={withAll ? [[ALL_VIEWS, "All"], ...own] : own}
+      chosen={withAll ? shown : Math.max(0, shown)}
+      choose={show}
+    />
   );
 }

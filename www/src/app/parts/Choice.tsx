@@ -1,14 +1,22 @@
 /** One of a few, as buttons beside each other. */
-interface Props<T extends string | number | boolean> {
+import type { Signal } from "@preact/signals";
+
+type Props<T extends string | number | boolean> = {
   /** What is chosen, for those who do not see the buttons side by side. */
   legend: string;
   choices: readonly (readonly [value: T, title: string, tooltip?: string])[];
-  chosen: T;
-  choose: (one: T) => void;
   class?: string;
-}
+} & ({ of: Signal<T> } | { chosen: T; choose: (one: T) => void });
 
-export function Choice<T extends string | number | boolean>({ legend, choices, chosen, ...of }: Props<T>) {
+export function Choice<T extends string | number | boolean>({ legend, choices, ...of }: Props<T>) {
+  const chosen = "of" in of ? of.of.value : of.chosen;
+  const choose = (one: T) => {
+    if ("of" in of) {
+      of.of.value = one;
+    } else {
+      of.choose(one);
+    }
+  };
   return (
     <fieldset class={`choice ${of.class ?? ""}`}>
       <legend class="visually-hidden">{legend}</legend>
@@ -18,7 +26,7 @@ export function Choice<T extends string | number | boolean>({ legend, choices, c
           type="button"
           title={tooltip}
           aria-pressed={chosen === one}
-          onClick={() => of.choose(one)}
+          onClick={() => choose(one)}
         >
           {title}
         </button>

@@ -37,16 +37,7 @@ export function facetColours(facets: readonly Facet[] | null, ran: Method): stri
 }
 
 export function ModeSwitches() {
-  return (
-    <Choice
-      legend="Appearance"
-      choices={MODES}
-      chosen={modelMode.value}
-      choose={(mode) => {
-        chosen.value = mode;
-      }}
-    />
-  );
+  return <Choice legend="Appearance" choices={MODES} of={chosen} />;
 }
 
 /** The numbers of facets that each method made. */
