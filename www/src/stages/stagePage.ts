@@ -3,6 +3,7 @@
  * stage without layers that are shown first is seen in the photographs.
  */
 import type { ComponentType } from "preact";
+import { results } from "../app/state/results";
 import type { Vec3 } from "../shared/records";
 import type { Layer } from "../viewer/scene/layer";
 import type { Results } from "./list";
@@ -46,3 +47,16 @@ export interface LayerState {
 
 /** A function that makes a layer, and what it makes it of; null where there is nothing to show. */
 export type Plan = readonly [build: () => Layer, ...of: unknown[]] | null;
+
+type Present<Parts extends readonly unknown[]> = { [K in keyof Parts]: NonNullable<Parts[K]> };
+
+/** The plan of a layer that is made of parts of the results, once all of them are there. */
+export function planOf<const Parts extends readonly unknown[]>(
+  partsOf: (found: Results) => Parts,
+  build: (...parts: Present<Parts>) => Layer,
+): () => Plan {
+  return () => {
+    const parts = partsOf(results.value);
+    return parts.includes(null) ? null : [() => build(...(parts as Present<Parts>)), ...parts];
+  };
+}

@@ -1,18 +1,14 @@
 /** B99 2 (Bonn): the adjacency graph over an image; a corner that is picked there lights up in the other views and in space. */
 import "../../app/figures/figures.css";
-import { Filmstrip } from "../../app/images/Filmstrip";
+import { SplitLab } from "../../app/figures/SplitLab";
 import { graphOverlay } from "../../app/images/graphOverlay";
-import { ImageCanvas } from "../../app/images/ImageCanvas";
-import { marksOf } from "../../app/images/selectionMarks";
-import { ViewPicker } from "../../app/images/ViewPicker";
+import { FigureImage, OwnViewPicker } from "../../app/images/ImageRow";
 import type { Figure } from "../figure";
 
 export function AdjacencyLab({ figure }: { figure: Figure }) {
-  const { scene, images, selection, results, act } = figure;
-  const { adjacency } = results;
+  const { adjacency } = figure.results;
   const view = Math.max(0, figure.view);
-  const image = images[view];
-  if (adjacency === null || image === undefined) {
+  if (adjacency === null || figure.images[view] === undefined) {
     return <p class="lab-hint muted">Run the stage: corners, edges and regions of each image appear here.</p>;
   }
   if (adjacency.trace.graphs.length === 0) {
@@ -24,22 +20,13 @@ export function AdjacencyLab({ figure }: { figure: Figure }) {
     );
   }
   return (
-    <div class="split-lab even">
-      <div class="chart-lab" data-testid="adjacency-lab">
-        <ViewPicker views={scene?.views ?? []} shown={view} withAll={false} show={act.showView} />
-        <ImageCanvas
-          view={view}
-          name={scene?.views[view]?.name ?? ""}
-          image={image}
-          overlay={{ segments: null, supports: null, graph: graphOverlay(adjacency, view) }}
-          selection={selection}
-          marks={marksOf(selection, view, figure)}
-          follows={false}
-          inText={figure.inText}
-          onPick={act.select}
-        />
-      </div>
-      <Filmstrip figure={figure} />
-    </div>
+    <SplitLab figure={figure} testid="adjacency-lab">
+      <OwnViewPicker figure={figure} />
+      <FigureImage
+        figure={figure}
+        view={view}
+        overlay={() => ({ segments: null, supports: null, graph: graphOverlay(adjacency, view) })}
+      />
+    </SplitLab>
   );
 }

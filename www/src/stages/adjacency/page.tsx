@@ -1,16 +1,12 @@
 /** Corners in space with their edges and planes. */
-import { results } from "../../app/state/results";
-import type { StagePage } from "../stagePage";
+import { planOf, type StagePage } from "../stagePage";
 import { buildAdjacency } from "./adjacencyLayer";
 
 export default {
   layers: {
     adjacency: {
       title: "Corners",
-      plan: () => {
-        const { adjacency } = results.value;
-        return adjacency && [() => buildAdjacency(adjacency), adjacency];
-      },
+      plan: planOf(({ adjacency }) => [adjacency], buildAdjacency),
       pickOrder: 7,
       isMeasured: true,
     },

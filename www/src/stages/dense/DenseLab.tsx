@@ -1,12 +1,13 @@
 /** B99 2: the patches of dense matching in plan, by what their planes are, or by how probably they are buildings. */
 import "../../app/figures/figures.css";
 import { useState } from "preact/hooks";
-import { Filmstrip } from "../../app/images/Filmstrip";
+import { PlanChart } from "../../app/figures/PlanChart";
+import { SplitLab } from "../../app/figures/SplitLab";
 import { Choice } from "../../app/parts/Choice";
-import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../../app/parts/charts";
+import { Fit, type Frame } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
-import { areasOf, equalScales, type PlanColours, planeAt, squaresAt } from "../../app/selection/densePlan";
-import type { DensePlanes, Vec2 } from "../../shared/records";
+import { areasOf, type PlanColours, planeAt, squaresAt } from "../../app/selection/densePlan";
+import type { DensePlanes } from "../../shared/records";
 import type { Figure } from "../figure";
 
 const CHOICES: readonly (readonly [PlanColours, string])[] = [
@@ -24,13 +25,10 @@ export function DenseLab({ figure }: { figure: Figure }) {
     return <p class="lab-hint muted">Dense matching found no plane, or is switched off in the parameters.</p>;
   }
   return (
-    <div class="split-lab even">
-      <div class="chart-lab" data-testid="dense-lab">
-        <Choice legend="Colours of the plan" choices={CHOICES} chosen={shows} choose={show} />
-        <Fit>{(frame) => <Plan frame={frame} figure={figure} dense={dense} shows={shows} />}</Fit>
-      </div>
-      <Filmstrip figure={figure} />
-    </div>
+    <SplitLab figure={figure} testid="dense-lab">
+      <Choice legend="Colours of the plan" choices={CHOICES} chosen={shows} choose={show} />
+      <Fit>{(frame) => <Plan frame={frame} figure={figure} dense={dense} shows={shows} />}</Fit>
+    </SplitLab>
   );
 }
 
@@ -44,40 +42,36 @@ interface PlanProps {
 function Plan({ frame, figure, dense, shows }: PlanProps) {
   const { patches, spacing_m } = dense.trace;
   const places = patches.map(({ middle }) => middle);
-  const [x, y] = equalScales(frame, places, spacing_m);
-  const [toX, toY] = axesOf(frame, x, y);
-  const side = toX(spacing_m) - toX(0);
   const buildings = dense.planes.filter((plane) => plane.class.building > 0.5).length;
   const picked = figure.selection;
-  const ring = picked?.kind === "dense" ? (dense.planes[picked.index]?.ring ?? []) : [];
-  const outline = closedPathOf(ring.map(([px, py]) => [toX(px), toY(py)] as const));
   return (
-    <Chart
+    <PlanChart
       frame={frame}
-      x={x}
-      y={y}
-      xTitle="x (m)"
-      yTitle="y (m)"
+      figure={figure}
+      places={places}
+      margin={spacing_m}
       label={`Plan of ${counted(dense.planes.length, "dense planes")}; buildings, more probably than not: ${buildings}`}
       testid="dense-plan"
-      onClick={(...at) => {
+      thingAt={(at) => {
         const index = planeAt(dense, at);
-        figure.act.select(index === null ? null : { kind: "dense", index });
+        return index === null ? null : { kind: "dense", index };
       }}
+      picked={picked?.kind === "dense" ? dense.planes[picked.index]?.ring : undefined}
     >
-      {areasOf(dense, shows).map(({ name, opacity, own }) => (
-        <path
-          key={`${name} ${opacity}`}
-          class={`dense-patches class-${name}`}
-          fill-opacity={opacity}
-          d={squaresAt(
-            own.map((i) => places[i] as Vec2).map(([px, py]) => [toX(px), toY(py)]),
-            side,
-          )}
-          data-count={own.length}
-        />
-      ))}
-      {outline !== "" && <path class="chosen-ring" d={outline} />}
-    </Chart>
+      {({ at }) =>
+        areasOf(dense, shows).map(({ name, opacity, own }) => (
+          <path
+            key={`${name} ${opacity}`}
+            class={`dense-patches class-${name}`}
+            fill-opacity={opacity}
+            d={squaresAt(
+              own.map((i) => at(places[i] ?? [])),
+              at([spacing_m])[0] - at([0])[0],
+            )}
+            data-count={own.length}
+          />
+        ))
+      }
+    </PlanChart>
   );
 }

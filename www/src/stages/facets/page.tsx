@@ -1,17 +1,16 @@
 /** The facets in space. */
-import { results } from "../../app/state/results";
 import { buildFacets } from "../../viewer/layers/facets";
 import { FACET } from "../sample";
-import type { StagePage } from "../stagePage";
+import { planOf, type StagePage } from "../stagePage";
 
 export default {
   layers: {
     facets: {
       title: "Facets",
-      plan: () => {
-        const { facets } = results.value;
-        return facets && [() => buildFacets(facets), facets];
-      },
+      plan: planOf(
+        ({ facets }) => [facets],
+        (facets) => buildFacets(facets),
+      ),
       pickOrder: 9,
       isMeasured: true,
       isCut: true,

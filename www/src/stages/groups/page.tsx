@@ -1,8 +1,7 @@
 /** The lines of each group in space. */
-import { results } from "../../app/state/results";
-import type { GroupingTrace } from "../../shared/records";
+import type { Facet, GroupingTrace } from "../../shared/records";
 import { ENDS, FACET, PLANE } from "../sample";
-import type { StagePage } from "../stagePage";
+import { planOf, type StagePage } from "../stagePage";
 import { buildGroups } from "./groupsLayer";
 
 const GROUPING: GroupingTrace = {
@@ -12,16 +11,13 @@ const GROUPING: GroupingTrace = {
   cells: 0,
 };
 
+const NO_FACETS: readonly Facet[] = [];
+
 export default {
   layers: {
     groups: {
       title: "Groups",
-      plan: () => {
-        const { lines, grouping, facets } = results.value;
-        return (
-          lines && grouping && [() => buildGroups(grouping, lines, facets ?? []), grouping, lines, facets]
-        );
-      },
+      plan: planOf(({ grouping, lines, facets }) => [grouping, lines, facets ?? NO_FACETS], buildGroups),
       pickOrder: 1,
       isMeasured: true,
       warm: () => buildGroups(GROUPING, ENDS, [FACET]),

@@ -5,7 +5,7 @@ import { selectionDetail } from "../../app/state/selectionDetail";
 import { tab } from "../../app/state/viewState";
 import type { HalfPlane, Vec3 } from "../../shared/records";
 import { ENDS, PLANE } from "../sample";
-import type { StagePage } from "../stagePage";
+import { planOf, type StagePage } from "../stagePage";
 import { buildFans, buildTurning } from "./fansLayer";
 
 const HALF_PLANE: HalfPlane = {
@@ -25,11 +25,7 @@ export default {
   layers: {
     fans: {
       title: "Half-planes",
-      plan: () => {
-        const { lines, halfPlanes, sides } = results.value;
-        const has = lines !== null && halfPlanes !== null;
-        return has ? [() => buildFans(halfPlanes, lines, sides), halfPlanes, lines] : null;
-      },
+      plan: planOf(({ halfPlanes, lines, sides }) => [halfPlanes, lines, sides], buildFans),
       pickOrder: 5,
       warm: () => buildFans([HALF_PLANE], ENDS, [{ line: 0, side: "right", rejection: "flat_curve" }]),
     },

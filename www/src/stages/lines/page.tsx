@@ -7,7 +7,7 @@ import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { LineRecord } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { ENDS } from "../sample";
-import type { StagePage } from "../stagePage";
+import { planOf, type StagePage } from "../stagePage";
 import { buildLines } from "./linesLayer";
 import { buildStretches } from "./stretchesLayer";
 import { buildUncertainty, enlargement } from "./uncertaintyLayer";
@@ -33,10 +33,7 @@ export default {
   layers: {
     lines: {
       title: "3D lines",
-      plan: () => {
-        const { lines, records } = results.value;
-        return lines && [() => buildLines(lines, records, ownLines), lines, records];
-      },
+      plan: planOf(({ lines, records }) => [lines, records, ownLines], buildLines),
       isSeen: (isChosen) => isChosen && !isBeforeGrowing(),
       pickOrder: 3,
       isMeasured: true,
@@ -55,10 +52,7 @@ export default {
       Legend: UncertaintyLegend,
     },
     stretches: {
-      plan: () => {
-        const { stretches } = results.value;
-        return stretches && [() => buildStretches(stretches), stretches];
-      },
+      plan: planOf(({ stretches }) => [stretches], buildStretches),
       isSeen: isBeforeGrowing,
       pickOrder: 2,
       isMeasured: true,

@@ -1,6 +1,6 @@
 /** W96 3.6: the window of a plane between parallel lines, and the histogram of positions (figures 10 and 11). */
 import "../../app/figures/figures.css";
-import { Filmstrip } from "../../app/images/Filmstrip";
+import { SplitLab } from "../../app/figures/SplitLab";
 import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { PAIR_WORDS } from "../../app/parts/reasonText";
@@ -19,32 +19,29 @@ export function RectangleLab({ figure }: { figure: Figure }) {
   const isChosen = (index: number) =>
     found.chosen.some((k) => samePair(found.candidates[k]?.lines, found.pairs[index]?.lines));
   return (
-    <div class="split-lab even">
-      <div class="chart-lab" data-testid="rectangle-lab">
-        <label class="pair-choice">
-          Pair of lines
-          <select
-            value={shown}
-            onChange={(event) => {
-              figure.act.select({ kind: "pair", index: Number(event.currentTarget.value) });
-            }}
-          >
-            {found.pairs.map((one, i) => (
-              <option key={one.lines.join()} value={i}>
-                {one.lines.join(" and ")}
-                {isChosen(i)
-                  ? " · selected"
-                  : one.rejection === null
-                    ? " · candidate"
-                    : ` · ${PAIR_WORDS[one.rejection]}`}
-              </option>
-            ))}
-          </select>
-        </label>
-        <Fit>{(frame) => <PlaneWindow outer={frame} pair={pair} />}</Fit>
-      </div>
-      <Filmstrip figure={figure} unpicked={{ kind: "pair", index: shown }} />
-    </div>
+    <SplitLab figure={figure} testid="rectangle-lab" unpicked={{ kind: "pair", index: shown }}>
+      <label class="pair-choice">
+        Pair of lines
+        <select
+          value={shown}
+          onChange={(event) => {
+            figure.act.select({ kind: "pair", index: Number(event.currentTarget.value) });
+          }}
+        >
+          {found.pairs.map((one, i) => (
+            <option key={one.lines.join()} value={i}>
+              {one.lines.join(" and ")}
+              {isChosen(i)
+                ? " · selected"
+                : one.rejection === null
+                  ? " · candidate"
+                  : ` · ${PAIR_WORDS[one.rejection]}`}
+            </option>
+          ))}
+        </select>
+      </label>
+      <Fit>{(frame) => <PlaneWindow outer={frame} pair={pair} />}</Fit>
+    </SplitLab>
   );
 }
 

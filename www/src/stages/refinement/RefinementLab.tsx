@@ -1,6 +1,6 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
 import "../../app/figures/figures.css";
-import { Filmstrip } from "../../app/images/Filmstrip";
+import { SplitLab } from "../../app/figures/SplitLab";
 import { axesOf, Chart, Fit, type Frame } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { RELATION_WORDS, refinementWords } from "../../app/parts/reasonText";
@@ -23,27 +23,24 @@ export function RefinementLab({ figure }: { figure: Figure }) {
     return <p class="lab-hint muted">Run the stage: what refinement tested appears here.</p>;
   }
   return (
-    <div class="split-lab even">
-      <div class="chart-lab" data-testid="refinement-lab">
-        <label class="pair-choice">
-          Building
-          <select
-            value={building}
-            onChange={(event) => {
-              figure.act.select({ kind: "refinement", index: Number(event.currentTarget.value) });
-            }}
-          >
-            {buildings.map((one, i) => (
-              <option key={one.building} value={i}>
-                {i} · {refinementWords(one)}
-              </option>
-            ))}
-          </select>
-        </label>
-        <Fit>{(frame) => <Relations outer={frame} figure={figure} building={building} of={shown} />}</Fit>
-      </div>
-      <Filmstrip figure={figure} />
-    </div>
+    <SplitLab figure={figure} testid="refinement-lab">
+      <label class="pair-choice">
+        Building
+        <select
+          value={building}
+          onChange={(event) => {
+            figure.act.select({ kind: "refinement", index: Number(event.currentTarget.value) });
+          }}
+        >
+          {buildings.map((one, i) => (
+            <option key={one.building} value={i}>
+              {i} · {refinementWords(one)}
+            </option>
+          ))}
+        </select>
+      </label>
+      <Fit>{(frame) => <Relations outer={frame} figure={figure} building={building} of={shown} />}</Fit>
+    </SplitLab>
   );
 }
 
