@@ -233,12 +233,10 @@ function pointsNow(): Vector3[] {
   return endsOfLines(lines.value ?? new Float64Array());
 }
 
-/** Where no tab of method "rectangles" shows a layer first that others do, it does not fill it. */
+/** Layers that only tabs of other methods show first stay empty with this one. */
 function isOffered(name: string): boolean {
   const isFirst = (one: Tab) => pageOf(one).shows?.includes(name) === true;
-  return (
-    method.value !== "rectangles" || tabsOf("rectangles").some(isFirst) || !tabsOf("combined").some(isFirst)
-  );
+  return tabsOf(method.value).some(isFirst) || !tabsOf("combined").some(isFirst);
 }
 
 function LayerSwitches() {
