@@ -7,8 +7,9 @@ import { useEffect, useRef } from "preact/hooks";
 import type { LengthMark, MeasuredLength, OrientationReport } from "../../shared/orientation";
 import { PALETTE } from "../../shared/palette";
 import { type End, type Ends, isMeasurable, marked, markIn, NO_MARKS, nextEnd } from "./lengthMarks";
-import { block, epipolarCurve, measureLength, pairs, readPhotographs } from "./orientation";
-import { cutOf, drawCurve, nameOf, PICTURE_PX, pictureOf } from "./photographPicture";
+import { block, epipolarCurve, measureLength, pairs } from "./orientation";
+import { PhotographCanvas } from "./PhotographCanvas";
+import { cutOf, drawCurve, nameOf } from "./photographPicture";
 
 const ENDS = ["First end", "Second end"] as const;
 
@@ -124,24 +125,9 @@ interface MarkableProps {
 
 /** A photograph in which ends are marked. */
 function Markable({ files, file, other, ends, end, onShow, onMark }: MarkableProps) {
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const bitmap = useSignal<ImageBitmap | null>(null);
   const curve = useSignal<Float32Array | null>(null);
-  const size = readPhotographs.value.find((one) => one.file === file)?.size ?? null;
   const own = markIn(ends, end, file);
   const partner = markIn(ends, end, other);
-  useEffect(() => {
-    let isCurrent = true;
-    bitmap.value = null;
-    void pictureOf(file).then((found) => {
-      if (isCurrent) {
-        bitmap.value = found;
-      }
-    });
-    return () => {
-      isCurrent = false;
-    };
-  }, [file]);
   useEffect(() => {
     let isCurrent = true;
     curve.value = null;
@@ -156,51 +142,37 @@ function Markable({ files, file, other, ends, end, onShow, onMark }: MarkablePro
       isCurrent = false;
     };
   }, [file, other, partner]);
-  useEffect(() => {
-    if (canvas.current !== null && size !== null) {
-      draw(canvas.current, bitmap.value, size[0], ends, end, file, curve.value);
-    }
-  }, [bitmap.value, curve.value, size, ends, end, file]);
-  if (size === null) {
-    return null;
-  }
-  const [width, height] = size;
-  const name = nameOf(file);
   return (
-    <figure>
-      <label>
-        <span class="visually-hidden">Photograph</span>
-        <select value={file} onChange={(event) => onShow(event.currentTarget.value)}>
-          {files.map((one) => (
-            <option key={one} value={one}>
-              {nameOf(one)}
-            </option>
-          ))}
-        </select>
-      </label>
-      <canvas
-        ref={canvas}
-        width={PICTURE_PX}
-        height={Math.round((PICTURE_PX * height) / width)}
-        role="img"
-        tabIndex={0}
-        aria-label={`${name}: click to mark the ${ENDS[end].toLowerCase()}; arrow keys move the mark`}
-        onClick={(event) => {
-          const { left, top, width: drawn } = event.currentTarget.getBoundingClientRect();
-          onMark(((event.clientX - left) * width) / drawn, ((event.clientY - top) * width) / drawn, true);
-        }}
-        onKeyDown={(event) => {
-          const step = STEPS[event.key];
-          if (step !== undefined) {
-            event.preventDefault();
-            const { x, y } = own ?? { x: width / 2, y: height / 2 };
-            const far = event.shiftKey ? FAR_STEP : 1;
-            onMark(x + far * step[0], y + far * step[1], false);
-          }
-        }}
-      />
+    <PhotographCanvas
+      file={file}
+      label={`${nameOf(file)}: click to mark the ${ENDS[end].toLowerCase()}; arrow keys move the mark`}
+      draw={(context, scale) => draw(context, scale, ends, end, file, curve.value)}
+      of={[curve.value, ends, end, file]}
+      onPlace={(x, y) => onMark(x, y, true)}
+      onKey={(event, [width, height]) => {
+        const step = STEPS[event.key];
+        if (step !== undefined) {
+          event.preventDefault();
+          const { x, y } = own ?? { x: width / 2, y: height / 2 };
+          const far = event.shiftKey ? FAR_STEP : 1;
+          onMark(x + far * step[0], y + far * step[1], false);
+        }
+      }}
+      head={
+        <label>
+          <span class="visually-hidden">Photograph</span>
+          <select value={file} onChange={(event) => onShow(event.currentTarget.value)}>
+            {files.map((one) => (
+              <option key={one} value={one}>
+                {nameOf(one)}
+              </option>
+            ))}
+          </select>
+        </label>
+      }
+    >
       {own !== undefined && <Magnifier mark={own} onMark={(x, y) => onMark(x, y, false)} />}
-    </figure>
+    </PhotographCanvas>
   );
 }
 
@@ -255,23 +227,13 @@ function Magnifier({ mark, onMark }: { mark: LengthMark; onMark: (x: number, y: 
 }
 
 function draw(
-  canvas: HTMLCanvasElement,
-  bitmap: ImageBitmap | null,
-  width: number,
+  context: CanvasRenderingContext2D,
+  scale: number,
   ends: Ends,
   end: End,
   file: string,
   curve: Float32Array | null,
 ): void {
-  const context = canvas.getContext("2d");
-  if (context === null) {
-    return;
-  }
-  const scale = canvas.width / width;
-  context.clearRect(0, 0, canvas.width, canvas.height);
-  if (bitmap !== null) {
-    context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
-  }
   if (curve !== null) {
     drawCurve(context, curve, scale, [PALETTE.casing, PALETTE.beam]);
   }

@@ -1,19 +1,11 @@
 /** Matches of a pair of photographs, and the epipolar line of one of them: what the second camera sees of a ray of the first. */
 import { useSignal, useSignalEffect } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
 import { PALETTE } from "../../shared/palette";
 import { counted } from "../parts/counted";
-import {
-  epipolarCurve,
-  pairs,
-  readPhotographs,
-  report,
-  type ShownPair,
-  shownPair,
-  showPair,
-} from "./orientation";
+import { epipolarCurve, pairs, report, type ShownPair, shownPair, showPair } from "./orientation";
+import { PhotographCanvas } from "./PhotographCanvas";
 import { nearestMatch } from "./pairGeometry";
-import { drawCurve, nameOf, PICTURE_PX, pictureOf } from "./photographPicture";
+import { drawCurve, nameOf } from "./photographPicture";
 
 const DOT_PX = 2;
 
@@ -127,69 +119,30 @@ interface PictureProps {
 }
 
 function Picture({ path, matches, side, chosen, curve, onPick }: PictureProps) {
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const bitmap = useSignal<ImageBitmap | null>(null);
-  const size = readPhotographs.value.find(({ file }) => file === path)?.size ?? null;
-  useEffect(() => {
-    let isCurrent = true;
-    bitmap.value = null;
-    void pictureOf(path).then((found) => {
-      if (isCurrent) {
-        bitmap.value = found;
-      }
-    });
-    return () => {
-      isCurrent = false;
-    };
-  }, [path]);
-  useEffect(() => {
-    if (canvas.current !== null && size !== null) {
-      draw(canvas.current, bitmap.value, size[0], matches, side, chosen, curve);
-    }
-  }, [bitmap.value, size, matches, chosen, curve]);
-  if (size === null) {
-    return null;
-  }
-  const [width, height] = size;
   return (
-    <figure>
-      <canvas
-        ref={canvas}
-        width={PICTURE_PX}
-        height={Math.round((PICTURE_PX * height) / width)}
-        role="img"
-        aria-label={`${nameOf(path)} with its matches`}
-        onClick={(event) => {
-          const { left, top, width: shown } = event.currentTarget.getBoundingClientRect();
-          onPick(((event.clientX - left) * width) / shown, ((event.clientY - top) * width) / shown);
-        }}
-      />
+    <PhotographCanvas
+      file={path}
+      label={`${nameOf(path)} with its matches`}
+      draw={(context, scale) => draw(context, scale, matches, side, chosen, curve)}
+      of={[matches, chosen, curve]}
+      onPlace={onPick}
+    >
       <figcaption class="muted">
         {side === 0 ? "x in " : "x′ and l′ in "}
         {nameOf(path)}
       </figcaption>
-    </figure>
+    </PhotographCanvas>
   );
 }
 
 function draw(
-  canvas: HTMLCanvasElement,
-  bitmap: ImageBitmap | null,
-  width: number,
+  context: CanvasRenderingContext2D,
+  scale: number,
   matches: Float32Array,
   side: 0 | 1,
   chosen: number,
   curve: Float32Array | null,
 ): void {
-  const context = canvas.getContext("2d");
-  if (context === null) {
-    return;
-  }
-  const scale = canvas.width / width;
-  context.clearRect(0, 0, canvas.width, canvas.height);
-  if (bitmap !== null) {
-    context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
-  }
   const dot = (match: number, radius: number, colour: string) => {
     const [x = 0, y = 0] = matches.subarray(4 * match + 2 * side, 4 * match + 2 * side + 2);
     context.beginPath();

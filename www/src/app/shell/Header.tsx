@@ -3,16 +3,14 @@
 import { METHODS } from "../../shared/stages";
 import { METHOD_WORDS } from "../../stages/catalogue";
 import { Choice } from "../parts/Choice";
+import { LookButtons } from "../parts/LookButtons";
 import { showsWorkbench } from "../screen/opening";
 import { setMethod } from "../session/stageRuns";
 import { activity } from "../state/activity";
 import { method } from "../state/parameters";
-import { biggerText, textScale } from "../state/textScale";
-import { theme, toggleTheme } from "../state/theme";
 import { startTour } from "../tour/steps";
 
 export function Header() {
-  const other = theme.value === "dark" ? "Light" : "Dark";
   return (
     <header class="header">
       <img src="./icon.svg" alt="" width="22" height="22" />
@@ -34,18 +32,7 @@ export function Header() {
       <a class="button" href="./lessons.html">
         Lessons
       </a>
-      <button
-        type="button"
-        class="quiet"
-        aria-label={`Text size: ${Math.round(100 * textScale.value)} %, next`}
-        title="Text size"
-        onClick={biggerText}
-      >
-        Aa
-      </button>
-      <button type="button" class="quiet" onClick={toggleTheme}>
-        {other}
-      </button>
+      <LookButtons />
     </header>
   );
 }

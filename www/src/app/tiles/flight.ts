@@ -5,9 +5,6 @@ import { secondsPerMegapixel } from "./pace";
 
 export type Region = readonly [x0: number, y0: number, x1: number, y1: number];
 
-/** What became of a tile so far. */
-export type TileStatus = "waiting" | "running" | "done";
-
 /** A run over the tiles that is going on. */
 export interface TileRun {
   /** Which tile, and the fraction of it that is done. */
