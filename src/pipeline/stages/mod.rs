@@ -4,9 +4,9 @@
 //! [`StageDefinition`] with its name, the stages it needs, the parameters it reads, its sharded
 //! maps, how it runs and how it is summarised); add `mod` and a line at its place in the table
 //! below; run `make golden`, which writes the table that the page reads. On the page, what it is to
-//! fetch and show is in `www/src/app/stages`. Everything else follows from the table: the order,
-//! the methods, what is out of date after a change of parameters, what workers are given, the
-//! reports.
+//! fetch and show is a folder, `www/src/stages/<name>`. Everything else follows from the table: the
+//! order, the methods, what is out of date after a change of parameters, what workers are given,
+//! the reports.
 //!
 //! Invariant: no file of a stage knows another one; they meet in [`Results`].
 
