@@ -42,6 +42,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "stages/figures",
       "stages/pages",
       "app/space",
+      "stages/tours",
       "app/tour",
       "app/stages",
       "app/entrance",
@@ -134,18 +135,25 @@ function importsOf(path: string): string[] {
   );
 }
 
-/** The files of a module's subfolders that it imports by one name. */
+/** The files of several folders that a module imports by one name. */
 function gathered(path: string, text: string): string[] {
-  const names = [...text.matchAll(/\bimport\.meta\.glob[^(]*\("\.\/\*\/([^"]+)"/g)].map(([, name]) => name);
-  return files.filter((file) => dirname(dirname(file)) === dirname(path) && names.includes(basename(file)));
+  const globs = [...text.matchAll(/\bimport\.meta\.glob[^(]*\(\s*"([^"]+)"/g)].map(([, glob]) =>
+    join(dirname(path), glob as string),
+  );
+  return files.filter((file) =>
+    globs.some((glob) => glob === join(dirname(dirname(file)), "*", basename(file))),
+  );
 }
 
-/** A stage's folder is on three floors: what is known of the stage, what is drawn of it anywhere, and what only the page has. */
+/** A stage's folder is on four floors: what is known of it, what is drawn of it anywhere, what only the page has, the tour. */
 function roomOf(path: string): string {
   if (!path.startsWith("stages/")) {
     return dirname(path);
   }
   const name = basename(path);
+  if (/^(tour|tourStep)\.ts$/.test(name)) {
+    return "stages/tours";
+  }
   const isOfPage = /^(page|pages|stagePage|sample|PageLegend|ModelModes)\.|Layer\.ts$/.test(name);
   return /^(stage|list|catalogue|figure)\.ts$/.test(name)
     ? "stages"
@@ -253,7 +261,7 @@ function isRunning(text: string, file: string): boolean {
   const name = file.replace(/\.tsx?$/, "");
   const all = [...text.matchAll(/^(?:import|export) (type )?[^;]*"\.[^"]*\/(\w+)"/gm)];
   const isImported = all.some(([, isType, named]) => named === name && isType === undefined);
-  return isImported || text.includes(`"./*/${file}"`);
+  return isImported || text.includes(`/*/${file}"`);
 }
 
 describe("the page's state", () => {

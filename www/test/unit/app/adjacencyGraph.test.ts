@@ -8,7 +8,6 @@ import { siblingsOf } from "../../../src/app/inspector/siblings";
 import { shapesOf } from "../../../src/app/selection/selectionShapes";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
-import { cornerParts } from "../../../src/app/tour/examples";
 import {
   type AdjacencyGraphs,
   type CornerPlane,
@@ -21,6 +20,7 @@ import {
   type SpaceEdge,
 } from "../../../src/shared/records";
 import { formatSelection, parseSelection } from "../../../src/shared/selection";
+import { cornerParts } from "../../../src/stages/adjacency/tour";
 import { tabsOf } from "../../../src/stages/catalogue";
 import { presentEntries } from "../../../src/stages/PageLegend";
 

@@ -6,7 +6,6 @@ import { setAt, shownSets } from "../../../src/app/selection/coplanarPlan";
 import { linesOfSelection, shapesOf } from "../../../src/app/selection/selectionShapes";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
-import { coplanarSetParts } from "../../../src/app/tour/examples";
 import {
   type CoplanarSet,
   type CoplanarSets,
@@ -18,6 +17,7 @@ import {
 } from "../../../src/shared/records";
 import { formatSelection, parseSelection } from "../../../src/shared/selection";
 import { tabsOf } from "../../../src/stages/catalogue";
+import { coplanarSetParts } from "../../../src/stages/coplanar/tour";
 import { presentEntries } from "../../../src/stages/PageLegend";
 
 const square = (x: number, side: number): CoplanarSet["polygon"] => [
