@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fit the tables of src/evidence (lines, facets, rectangles, windows, lines in the model, surfaces) to scenes of which the truth is known.
+"""Fit the tables of src/base/evidence (lines, facets, rectangles, windows, lines in the model, surfaces) to scenes of which the truth is known.
 
     python3 tests/calibrate.py --binary target/release/ridgeline [--scenes NAME,...]
                                [--fit FOLDER] [--more FOLDER] [--dry] [--keep]
@@ -11,7 +11,7 @@ lines in the finished model. The folder of --fit (../shared/fit) has random scen
 their seed, that of --more (../shared/scenes) those of FITTED; beside them lies `score/` with
 score.py, by whose definitions a candidate is true. Printed are area under the ROC curve and expected calibration error of the
 present tables, which may know these scenes, and of the new ones, cross-validated by scene. Written
-are src/evidence/*.json and docs/calibration-*.svg (--dry: nothing; --keep takes runs that are there
+are src/base/evidence/*.json and docs/calibration-*.svg (--dry: nothing; --keep takes runs that are there
 already). Other lines make other facets: build and run again until the tables stay. Needs numpy,
 scipy and shapely.
 """

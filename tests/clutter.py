@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Fit src/evidence/clutter.json, how the heights at which views agree lie about a roof, to rendered scenes with truth.
+"""Fit src/base/evidence/clutter.json, how the heights at which views agree lie about a roof, to rendered scenes with truth.
 
     python3 tests/clutter.py --scenes FOLDER [--only NAMES]
     python3 tests/clutter.py --self-test
 
 The windows inside every true facet are compared in all views at heights from 1.2 m below it to 1.6 m above. Numbers of
-the table are those under which the true height is likeliest among all (src/buildings/parapets.rs has the model); a tenth
+the table are those under which the true height is likeliest among all (src/roofs/buildings/parapets.rs has the model); a tenth
 of the facets may be beyond it. The share of rims stays as it is: it counts what was found, not what is true. Needs numpy,
 scipy, Pillow and shapely.
 """
@@ -22,7 +22,7 @@ from shapely import contains_xy
 from shapely.geometry import Polygon
 
 TABLE = pathlib.Path(__file__).resolve().parent.parent / 'src' / 'evidence' / 'clutter.json'
-# As in src/photoconsistency: cells of a window's side, and their width, metres.
+# As in src/planes/photoconsistency: cells of a window's side, and their width, metres.
 WINDOW, STEP_M = 11, 0.08
 HEIGHTS = np.arange(-1.2, 1.61, 0.1)
 # Heights that count as the right one.

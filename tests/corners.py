@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fit src/evidence/corners.json, how often and by what angle outlines of roofs turn, to scenes with truth.
+"""Fit src/base/evidence/corners.json, how often and by what angle outlines of roofs turn, to scenes with truth.
 
     python3 tests/corners.py --scenes FOLDER [--only NAMES]
     python3 tests/corners.py --self-test

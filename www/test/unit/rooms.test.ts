@@ -5,6 +5,9 @@ import { describe, expect, it } from "vitest";
 
 const SOURCES = fileURLToPath(new URL("../../src", import.meta.url));
 
+/** What is known of the things that can be picked. */
+const KINDS = ["kinds/parts", "kinds/images", "kinds/lines", "kinds/planes", "kinds/roofs", "kinds"];
+
 /** The rooms from the ground up, each with those that it may import from besides itself. */
 const ROOMS: Readonly<Record<string, readonly string[]>> = {
   shared: [],
@@ -23,6 +26,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "app/screen",
       "app/words",
       "app/parts",
+      ...KINDS,
       "app/glossary",
       "app/settings",
       "app/tiles",
@@ -57,6 +61,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "app/state",
       "app/words",
       "app/parts",
+      ...KINDS,
       "app/glossary",
       "app/selection",
       "app/images",
@@ -124,25 +129,28 @@ const imports = new Map(modules.map((path) => [path, importsOf(path)]));
 
 function importsOf(path: string): string[] {
   const text = readFileSync(join(SOURCES, path), "utf8");
-  const named = [...text.matchAll(/(?:^import|^export|^\}|\bimport\() ?[^;"]*"(\.[^"]+)"/gm)];
-  return [...named.map(([, one]) => join(dirname(path), one as string)), ...gathered(path, text)].flatMap(
-    (named) => {
+  const named = [...text.matchAll(/(?:^import|^export|^\}|\bimport\() ?[^;"]*"(\.[^"]+)"/gm)]
+    .map(([, named]) => join(dirname(path), named as string))
+    .flatMap((named) => {
       const found = [named, `${named}.ts`, `${named}.tsx`, named.replace(/\.js$/, ".ts")].find((one) =>
         files.includes(one),
       );
       return found === undefined ? [] : [found];
-    },
-  );
+    });
+  return [...named, ...globbed(path, text)];
 }
 
-/** The files of several folders that a module imports by one name. */
-function gathered(path: string, text: string): string[] {
-  const globs = [...text.matchAll(/\bimport\.meta\.glob[^(]*\(\s*"([^"]+)"/g)].map(([, glob]) =>
-    join(dirname(path), glob as string),
+/** The files that a module imports by a pattern. */
+function globbed(path: string, text: string): string[] {
+  const [, pattern] = /import\.meta\.glob[^"]*"(\.[^"]+)"/.exec(text) ?? [];
+  if (pattern === undefined) {
+    return [];
+  }
+  const words: Record<string, string> = { ".": "\\.", "*": "[^/]+", "{": "(", ",": "|", "}": ")" };
+  const wanted = new RegExp(
+    `^${join(dirname(path), pattern).replace(/[.*{,}]/g, (sign) => words[sign] ?? "")}$`,
   );
-  return files.filter((file) =>
-    globs.some((glob) => glob === join(dirname(dirname(file)), "*", basename(file))),
-  );
+  return files.filter((file) => wanted.test(file));
 }
 
 /** A stage's folder is on four floors: what is known of it, what is drawn of it anywhere, what only the page has, the tour. */
@@ -261,7 +269,7 @@ function isRunning(text: string, file: string): boolean {
   const name = file.replace(/\.tsx?$/, "");
   const all = [...text.matchAll(/^(?:import|export) (type )?[^;]*"\.[^"]*\/(\w+)"/gm)];
   const isImported = all.some(([, isType, named]) => named === name && isType === undefined);
-  return isImported || text.includes(`/*/${file}"`);
+  return isImported || text.includes("import.meta.glob");
 }
 
 describe("the page's state", () => {

@@ -1,4 +1,6 @@
 /** The selected thing in every view, each picture zoomed to it: "it lights up in every image". */
+import { marksOf } from "../../kinds/kinds";
+import type { Mark } from "../../kinds/parts/marks";
 import "./images.css";
 import { useEffect, useRef } from "preact/hooks";
 import type { Selection } from "../../shared/selection";
@@ -6,7 +8,6 @@ import type { Figure } from "../../stages/figure";
 import { textScale } from "../state/textScale";
 import { drawView } from "./drawing";
 import { paint } from "./pen";
-import { type Mark, marksOf } from "./selectionMarks";
 import { fitPoints, type Size } from "./viewport";
 
 const WIDTH_PX = 190;

@@ -1,10 +1,11 @@
 /** Photographs beside each other, with what a stage found drawn over. */
 import "./images.css";
 import type { ComponentProps } from "preact";
+import { marksOf } from "../../kinds/kinds";
+import type { Mark } from "../../kinds/parts/marks";
 import { type Figure, viewName } from "../../stages/figure";
 import type { Overlay } from "./drawing";
 import { ImageCanvas } from "./ImageCanvas";
-import { type Mark, marksOf } from "./selectionMarks";
 import { ViewPicker } from "./ViewPicker";
 
 interface Props {

@@ -1,12 +1,12 @@
 /** The image tabs: one view or all of them, with what the tab's stage found drawn over. */
 import "./images.css";
 import type { ComponentChildren } from "preact";
+import type { Mark } from "../../kinds/parts/marks";
 import type { Vec2 } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import { followsSelection, zoomToSelection } from "../state/viewState";
 import type { Overlay } from "./drawing";
 import { FigureImage } from "./ImageRow";
-import type { Mark } from "./selectionMarks";
 import { ALL_VIEWS, ViewPicker } from "./ViewPicker";
 
 /** Something that is drawn in the views by clicks. */

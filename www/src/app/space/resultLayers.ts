@@ -1,6 +1,9 @@
 /** The layers of the 3D view, from the results: each is built anew when what it shows has changed, in a task of its own. */
+
 import { computed, effect, signal } from "@preact/signals";
 import { Vector3 } from "three";
+import { linesOf, shapesOf } from "../../kinds/kinds";
+import { lineEnds } from "../../kinds/parts/shapes";
 import type { Facet, Vec3 } from "../../shared/records";
 import type { Tab } from "../../stages/list";
 import { pageOf, STAGE_LAYERS } from "../../stages/pages";
@@ -13,7 +16,6 @@ import { buildOutlines } from "../../viewer/layers/outlines";
 import { unpicked } from "../../viewer/scene/layer";
 import type { LayerRoles } from "../../viewer/scene/layerRoles";
 import type { Viewer } from "../../viewer/viewer";
-import { lineEnds, linesOfSelection, shapesOf } from "../selection/selectionShapes";
 import { keptResult } from "../state/keptResult";
 import { preliminaryFacets, results } from "../state/results";
 import { images, scene } from "../state/scene";
@@ -54,7 +56,7 @@ export const LAYERS: Readonly<Record<string, SpaceLayer>> = {
       // A segment is in no place of space, but its line is.
       const lines =
         selection.value?.kind === "segment"
-          ? linesOfSelection(selection.value, results.peek()).map((line) => lineEnds(line, results.value))
+          ? linesOf(selection.value, results.peek()).map((line) => lineEnds(line, results.value))
           : [];
       const all = [...areas, ...lines.map((points) => ({ points, closed: false }))];
       return all.length === 0 ? null : [() => buildHighlight(all), selection.value, results.value];

@@ -4,7 +4,8 @@ import { useEffect, useRef } from "preact/hooks";
 import { axesOf, Chart, closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { REJECTION_WORDS } from "../../app/parts/reasonText";
-import { bestTheta, sideOf } from "../../app/selection/inquiry";
+import { bestTheta } from "../../app/selection/inquiry";
+import { questionOf } from "../../kinds/kinds";
 import type { WarpedPicture } from "../../shared/calls";
 import { category } from "../../shared/palette";
 import type { SideTrace } from "../../shared/records";
@@ -69,7 +70,8 @@ interface OfSide {
 /** Which side of which line, the other one at hand, and why it was rejected. */
 function SideHead({ figure, side }: OfSide) {
   const other = side.side === "left" ? "right" : "left";
-  const isPicked = sideOf(figure.selection, figure.results)?.line === side.line;
+  const asked = questionOf(figure.selection, figure.results);
+  const isPicked = asked?.about === "side" && asked.line === side.line;
   return (
     <div class="row spread">
       <p class="lab-head">

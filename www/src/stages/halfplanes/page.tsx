@@ -1,8 +1,9 @@
 /** Half-planes in space, and the one that is turned by hand. */
-import { lineEnds } from "../../app/selection/selectionShapes";
+
 import { results } from "../../app/state/results";
 import { selectionDetail } from "../../app/state/selectionDetail";
 import { tab } from "../../app/state/viewState";
+import { lineEnds } from "../../kinds/parts/shapes";
 import type { HalfPlane, Vec3 } from "../../shared/records";
 import { ENDS, PLANE } from "../sample";
 import { planOf, type StagePage } from "../stagePage";

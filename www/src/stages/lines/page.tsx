@@ -1,8 +1,8 @@
 /** The 3D lines in space, with their uncertainty, and as they were before growing. */
 import { Choice } from "../../app/parts/Choice";
-import { linesOfSelection } from "../../app/selection/selectionShapes";
 import { results } from "../../app/state/results";
 import { beforeGrowing, showBeforeGrowing, tab } from "../../app/state/viewState";
+import { linesOf } from "../../kinds/kinds";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { LineRecord } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
@@ -13,7 +13,7 @@ import { buildStretches } from "./stretchesLayer";
 import { buildUncertainty, enlargement } from "./uncertaintyLayer";
 
 /** The 3D lines of a selection, in the results of now. */
-const ownLines = (picked: Selection | null) => linesOfSelection(picked, results.peek());
+const ownLines = (picked: Selection | null) => linesOf(picked, results.peek());
 
 const isBeforeGrowing = () => tab.value === "lines" && beforeGrowing.value;
 

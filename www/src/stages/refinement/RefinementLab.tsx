@@ -4,7 +4,7 @@ import { SplitLab } from "../../app/figures/SplitLab";
 import { axesOf, Chart, Fit, type Frame } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { RELATION_WORDS, refinementWords } from "../../app/parts/reasonText";
-import { buildingOfFacet, relationLimit } from "../../app/selection/refinedBuildings";
+import { buildingOfFacet, relationLimit } from "../../kinds/parts/refinedBuildings";
 import type { BuildingRefinement, TestedRelation } from "../../shared/records";
 import type { Figure } from "../figure";
 
