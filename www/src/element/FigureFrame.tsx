@@ -1,7 +1,7 @@
 /** What stands around a figure: how far it is, what went wrong, its title and paper, and what can be taken along. */
 import { useEffect, useRef, useState } from "preact/hooks";
-import { AboutFigure } from "../app/figures/AboutFigure";
-import { TakeAlong } from "../app/takeAlong/TakeAlong";
+import { TakeAlong } from "../app/results/takeAlong/TakeAlong";
+import { AboutFigure } from "../app/view/figures/AboutFigure";
 import type { FigureStore } from "./figureStore";
 import type { Kind } from "./kinds";
 import type { SharedScene } from "./sharedScene";

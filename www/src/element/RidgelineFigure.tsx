@@ -4,9 +4,9 @@
  */
 import { effect, signal } from "@preact/signals";
 import { render } from "preact";
-import { citationOf } from "../app/takeAlong/citation";
-import { pngOf, svgOf } from "../app/takeAlong/pictures";
-import { csvOf, type Row } from "../app/takeAlong/rows";
+import { citationOf } from "../app/results/takeAlong/citation";
+import { pngOf, svgOf } from "../app/results/takeAlong/pictures";
+import { csvOf, type Row } from "../app/results/takeAlong/rows";
 import type { CoreSource } from "../core/workerEngine";
 import type { Args, InputFile, Result } from "../shared/calls";
 import type { Figure } from "../stages/figure";

@@ -3,10 +3,10 @@
  * knows nothing of the page's state.
  */
 import type { ComponentType } from "preact";
-import type { FigureText } from "../app/figures/AboutFigure";
-import type { Overlay } from "../app/images/drawing";
 import type { LegendEntry } from "../app/parts/Legend";
-import type { Row } from "../app/takeAlong/rows";
+import type { Row } from "../app/results/takeAlong/rows";
+import type { FigureText } from "../app/view/figures/AboutFigure";
+import type { Overlay } from "../app/view/images/drawing";
 import type { Selection } from "../shared/selection";
 import type { Figure } from "./figure";
 import type { Results } from "./list";

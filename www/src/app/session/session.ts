@@ -5,6 +5,7 @@ import { WorkerPool } from "../../core/workerPool";
 import type { Args, CallName, Result } from "../../shared/calls";
 import type { SceneInfo } from "../../shared/records";
 import { stagesOf } from "../../stages/catalogue";
+import { flightPlan, showTileFraction, tileRun } from "../project/tiles/flight";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions } from "../settings/loadOptions";
 import { paramsOf } from "../settings/parameterForm";
@@ -21,7 +22,6 @@ import {
   stages,
   updateStage,
 } from "../state/stages";
-import { flightPlan, showTileFraction, tileRun } from "../tiles/flight";
 import { ActionQueue } from "./actionQueue";
 import { failureNotice } from "./failureNotice";
 

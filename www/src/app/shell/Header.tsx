@@ -4,11 +4,11 @@ import { METHODS } from "../../shared/stages";
 import { METHOD_WORDS } from "../../stages/catalogue";
 import { Choice } from "../parts/Choice";
 import { LookButtons } from "../parts/LookButtons";
-import { showsWorkbench } from "../screen/opening";
 import { setMethod } from "../session/stageRuns";
 import { activity } from "../state/activity";
 import { method } from "../state/parameters";
 import { startTour } from "../tour/steps";
+import { showsWorkbench } from "../view/screen/opening";
 
 export function Header() {
   return (

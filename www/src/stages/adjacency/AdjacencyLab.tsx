@@ -1,8 +1,8 @@
 /** B99 2 (Bonn): the adjacency graph over an image; a corner that is picked there lights up in the other views and in space. */
-import "../../app/figures/figures.css";
-import { SplitLab } from "../../app/figures/SplitLab";
-import { graphOverlay } from "../../app/images/graphOverlay";
-import { FigureImage, OwnViewPicker } from "../../app/images/ImageRow";
+import "../../app/view/figures/figures.css";
+import { SplitLab } from "../../app/view/figures/SplitLab";
+import { graphOverlay } from "../../app/view/images/graphOverlay";
+import { FigureImage, OwnViewPicker } from "../../app/view/images/ImageRow";
 import type { Figure } from "../figure";
 
 export function AdjacencyLab({ figure }: { figure: Figure }) {

@@ -1,11 +1,11 @@
 /** W96 3.5: the plane across a main direction, its image lines and its clusters (figures 7 and 8). */
 
-import "../../app/figures/figures.css";
+import "../../app/view/figures/figures.css";
 import { useId } from "preact/hooks";
-import { PlaneChoice } from "../../app/figures/PlaneChoice";
 import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { degreesOf, grouped } from "../../app/parts/numberText";
+import { PlaneChoice } from "../../app/view/figures/PlaneChoice";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import { category } from "../../shared/palette";
 import type { ClusterTrace, Directions, Vec2 } from "../../shared/records";

@@ -1,5 +1,5 @@
 /** Clusters of image lines in the planes across the main directions. */
-import type { Row } from "../../app/takeAlong/rows";
+import type { Row } from "../../app/results/takeAlong/rows";
 import type { Figure } from "../figure";
 import type { StageFigure } from "../stageFigure";
 import { ClusterLab } from "./ClusterLab";

@@ -1,12 +1,12 @@
 /** B99 2: sets of coplanar lines in plan, with their hulls before and their polygons after symmetry. */
-import "../../app/figures/figures.css";
+import "../../app/view/figures/figures.css";
 import { useState } from "preact/hooks";
-import { PlanChart } from "../../app/figures/PlanChart";
-import { SplitLab } from "../../app/figures/SplitLab";
 import { Choice } from "../../app/parts/Choice";
 import { Fit, type Frame } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { type CoplanarOutlines, setAt, shownSets } from "../../app/selection/coplanarPlan";
+import { PlanChart } from "../../app/view/figures/PlanChart";
+import { SplitLab } from "../../app/view/figures/SplitLab";
 import { category } from "../../shared/palette";
 import { isVerifiedSet } from "../../shared/proposed";
 import type { CoplanarSets } from "../../shared/records";

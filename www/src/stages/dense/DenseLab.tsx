@@ -1,12 +1,12 @@
 /** B99 2: the patches of dense matching in plan, by what their planes are, or by how probably they are buildings. */
-import "../../app/figures/figures.css";
+import "../../app/view/figures/figures.css";
 import { useState } from "preact/hooks";
-import { PlanChart } from "../../app/figures/PlanChart";
-import { SplitLab } from "../../app/figures/SplitLab";
 import { Choice } from "../../app/parts/Choice";
 import { Fit, type Frame } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { areasOf, type PlanColours, planeAt, squaresAt } from "../../app/selection/densePlan";
+import { PlanChart } from "../../app/view/figures/PlanChart";
+import { SplitLab } from "../../app/view/figures/SplitLab";
 import type { DensePlanes } from "../../shared/records";
 import type { Figure } from "../figure";
 

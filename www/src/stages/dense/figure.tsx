@@ -1,6 +1,6 @@
 /** Planes of dense matching. */
 import type { LegendEntry } from "../../app/parts/Legend";
-import { planeOf } from "../../app/takeAlong/rows";
+import { planeOf } from "../../app/results/takeAlong/rows";
 import { CLASSES, type ClassName, likeliestClass } from "../../shared/surfaceClass";
 import { highest } from "../highest";
 import { faintEntry } from "../lines/lineLegend";

@@ -1,8 +1,8 @@
 /** W96 3.4: the histogram of azimuths (figures 4 and 5), and which direction an image line follows. */
-import "../../app/figures/figures.css";
-import { PlaneChoice } from "../../app/figures/PlaneChoice";
+import "../../app/view/figures/figures.css";
 import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../../app/parts/charts";
 import { degreesOf } from "../../app/parts/numberText";
+import { PlaneChoice } from "../../app/view/figures/PlaneChoice";
 import { category } from "../../shared/palette";
 import type { MainDirections } from "../../shared/records";
 import type { Figure } from "../figure";

@@ -1,6 +1,6 @@
 /** The main directions, and the image lines that follow them. */
-import type { Overlay } from "../../app/images/drawing";
-import { PickedImage } from "../../app/images/ImageRow";
+import type { Overlay } from "../../app/view/images/drawing";
+import { PickedImage } from "../../app/view/images/ImageRow";
 import type { Figure } from "../figure";
 import type { StageFigure } from "../stageFigure";
 import { DirectionLab } from "./DirectionLab";

@@ -1,10 +1,10 @@
 /** B99 figures 21 to 23: the facets in plan, each in the colour of its plane, and the border lines that enclose them. */
-import "../../app/figures/figures.css";
-import { Filmstrip } from "../../app/images/Filmstrip";
+import "../../app/view/figures/figures.css";
 import { closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { FOOTPRINT_WORDS } from "../../app/parts/knownText";
 import { facetRejectionWords } from "../../app/parts/reasonText";
+import { Filmstrip } from "../../app/view/images/Filmstrip";
 import type { Facet, FacetTrace, GroupingTrace, Vec2 } from "../../shared/records";
 import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
 import { roofTintHex } from "../../viewer/scene/roofTint";

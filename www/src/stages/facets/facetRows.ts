@@ -1,4 +1,4 @@
-import { planeOf, type Row } from "../../app/takeAlong/rows";
+import { planeOf, type Row } from "../../app/results/takeAlong/rows";
 import type { Figure } from "../figure";
 
 /** Corners of the facets, in their order. */

@@ -1,7 +1,7 @@
 /** B99 figures 17 to 20: the groups of coplanar half-planes. */
-import "../../app/figures/figures.css";
-import { Filmstrip } from "../../app/images/Filmstrip";
+import "../../app/view/figures/figures.css";
 import { counted } from "../../app/parts/counted";
+import { Filmstrip } from "../../app/view/images/Filmstrip";
 import { category } from "../../shared/palette";
 import { densePlanesOf, type PlaneGroup, rectanglesOf } from "../../shared/records";
 import type { Figure } from "../figure";

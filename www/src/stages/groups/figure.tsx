@@ -1,5 +1,5 @@
 /** Groups of coplanar half-planes. */
-import { planeOf } from "../../app/takeAlong/rows";
+import { planeOf } from "../../app/results/takeAlong/rows";
 import type { PlaneGroup } from "../../shared/records";
 import { highest } from "../highest";
 import type { StageFigure } from "../stageFigure";

@@ -1,5 +1,5 @@
 /** B99 figures 10 to 14: the half-plane turned by hand, the views warped onto it, and Sim(theta). */
-import "../../app/figures/figures.css";
+import "../../app/view/figures/figures.css";
 import { useEffect, useRef } from "preact/hooks";
 import { axesOf, Chart, closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";

@@ -1,6 +1,6 @@
 /** Half-planes at the 3D lines, and Sim(theta) of each. */
 import { degreesOf } from "../../app/parts/numberText";
-import type { Row } from "../../app/takeAlong/rows";
+import type { Row } from "../../app/results/takeAlong/rows";
 import type { Selection } from "../../shared/selection";
 import { type Figure, viewName } from "../figure";
 import { highest } from "../highest";

@@ -1,8 +1,8 @@
 /** B99 figure 9: accuracy against the number of views. */
-import "../../app/figures/figures.css";
-import { Filmstrip } from "../../app/images/Filmstrip";
+import "../../app/view/figures/figures.css";
 import { axesOf, Chart, dotsOf, Fit, type Frame, type Scale } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
+import { Filmstrip } from "../../app/view/images/Filmstrip";
 import type { LineRecord } from "../../shared/records";
 import type { Figure } from "../figure";
 import type { Results } from "../list";

@@ -1,5 +1,5 @@
 /** The 3D lines, and how accurate they are. */
-import { endsOf } from "../../app/takeAlong/rows";
+import { endsOf } from "../../app/results/takeAlong/rows";
 import type { Selection } from "../../shared/selection";
 import type { Figure } from "../figure";
 import type { StageFigure } from "../stageFigure";

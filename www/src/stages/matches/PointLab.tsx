@@ -1,5 +1,5 @@
 /** B99 figures 2 to 4: the candidates of a segment, pointwise correspondence, and the two windows that are compared. */
-import "../../app/figures/figures.css";
+import "../../app/view/figures/figures.css";
 import { useEffect, useRef } from "preact/hooks";
 import { counted } from "../../app/parts/counted";
 import { outcomeWords } from "../../app/parts/reasonText";

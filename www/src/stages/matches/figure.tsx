@@ -1,7 +1,8 @@
 /** Segments with their candidates in other views, and what was matched. */
-import type { Overlay } from "../../app/images/drawing";
-import { ImageRow } from "../../app/images/ImageRow";
-import type { Row } from "../../app/takeAlong/rows";
+
+import type { Row } from "../../app/results/takeAlong/rows";
+import type { Overlay } from "../../app/view/images/drawing";
+import { ImageRow } from "../../app/view/images/ImageRow";
 import type { Selection } from "../../shared/selection";
 import { type Figure, viewName } from "../figure";
 import type { StageFigure } from "../stageFigure";

@@ -1,5 +1,5 @@
 /** The textured model. */
-import { Filmstrip } from "../../app/images/Filmstrip";
+import { Filmstrip } from "../../app/view/images/Filmstrip";
 import { facetRows } from "../facets/facetRows";
 import type { StageFigure } from "../stageFigure";
 

@@ -1,5 +1,5 @@
 /** The tour: the model against a photograph. */
-import { throughView } from "../../app/space/Photograph";
+import { throughView } from "../../app/view/space/Photograph";
 import type { StageStep } from "../tourStep";
 
 export default [

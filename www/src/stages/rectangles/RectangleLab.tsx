@@ -1,9 +1,9 @@
 /** W96 3.6: the window of a plane between parallel lines, and the histogram of positions (figures 10 and 11). */
-import "../../app/figures/figures.css";
-import { SplitLab } from "../../app/figures/SplitLab";
+import "../../app/view/figures/figures.css";
 import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { PAIR_WORDS } from "../../app/parts/reasonText";
+import { SplitLab } from "../../app/view/figures/SplitLab";
 import { category } from "../../shared/palette";
 import type { PlaneTrace } from "../../shared/records";
 import type { Figure } from "../figure";

@@ -1,9 +1,9 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
-import "../../app/figures/figures.css";
-import { SplitLab } from "../../app/figures/SplitLab";
+import "../../app/view/figures/figures.css";
 import { axesOf, Chart, Fit, type Frame } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { RELATION_WORDS, refinementWords } from "../../app/parts/reasonText";
+import { SplitLab } from "../../app/view/figures/SplitLab";
 import { buildingOfFacet, relationLimit } from "../../kinds/parts/refinedBuildings";
 import type { BuildingRefinement, TestedRelation } from "../../shared/records";
 import type { Figure } from "../figure";

@@ -1,6 +1,6 @@
 /** The regions of each view. */
-import type { Overlay } from "../../app/images/drawing";
-import { PickedImage } from "../../app/images/ImageRow";
+import type { Overlay } from "../../app/view/images/drawing";
+import { PickedImage } from "../../app/view/images/ImageRow";
 import { category } from "../../shared/palette";
 import type { Segmentation } from "../../shared/records";
 import { type Figure, viewName } from "../figure";

@@ -1,7 +1,8 @@
 /** The segments of each view. */
-import type { Overlay } from "../../app/images/drawing";
-import { PickedImage } from "../../app/images/ImageRow";
-import type { Row } from "../../app/takeAlong/rows";
+
+import type { Row } from "../../app/results/takeAlong/rows";
+import type { Overlay } from "../../app/view/images/drawing";
+import { PickedImage } from "../../app/view/images/ImageRow";
 import { type Figure, viewName } from "../figure";
 import type { StageFigure } from "../stageFigure";
 

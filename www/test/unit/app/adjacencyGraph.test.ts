@@ -1,8 +1,8 @@
 /** What the page says of adjacency graphs: corners of an image, corners in space, and the planes that these propose. */
 import { afterEach, describe, expect, it } from "vitest";
-import { cornerAt, graphOverlay } from "../../../src/app/images/graphOverlay";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
+import { cornerAt, graphOverlay } from "../../../src/app/view/images/graphOverlay";
 import { rowsOf, shapesOf, siblingsOf, titleOf } from "../../../src/kinds/kinds";
 import type { Related, Row } from "../../../src/kinds/parts/rows";
 import { planesOfCorner } from "../../../src/kinds/planes/corner";

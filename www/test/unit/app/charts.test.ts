@@ -1,7 +1,7 @@
 import { readdirSync, readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { axesOf, closedPathOf, frameOf, histogramOf, pathOf, ticks } from "../../../src/app/parts/charts";
-import { oneScale } from "../../../src/app/space/SectionChart";
+import { oneScale } from "../../../src/app/view/space/SectionChart";
 import { planeNames } from "../../../src/stages/clusters/ClusterLab";
 import { quantile } from "../../../src/stages/lines/LineLab";
 

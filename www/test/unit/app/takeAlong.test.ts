@@ -1,7 +1,7 @@
 /** What figures say of themselves outside of the page: their state in links, their papers, their numbers. */
 import { describe, expect, it } from "vitest";
-import { citationOf } from "../../../src/app/takeAlong/citation";
-import { csvOf } from "../../../src/app/takeAlong/rows";
+import { citationOf } from "../../../src/app/results/takeAlong/citation";
+import { csvOf } from "../../../src/app/results/takeAlong/rows";
 import {
   addressOf,
   FIRST_STATE,
