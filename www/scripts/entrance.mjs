@@ -4,7 +4,7 @@
 //   node scripts/entrance.mjs        needs src/pkg; writes public/entrance/
 
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
-import { addFiles, openSession, root } from "../../tests/session.mjs";
+import { addFiles, openSession, root } from "../../tests/wasm/session.mjs";
 
 const OUT = new URL("../public/entrance/", import.meta.url);
 const DEMO = `${root}/www/public/demo`;

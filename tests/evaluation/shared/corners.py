@@ -1,19 +1,12 @@
-#!/usr/bin/env python3
-"""Fit src/evidence/corners.json, how often and by what angle outlines of roofs turn, to scenes with truth.
-
-    python3 tests/corners.py --scenes FOLDER [--only NAMES]
-    python3 tests/corners.py --self-test
+"""Fits src/evidence/corners.json, how often and by what angle outlines of roofs turn, to scenes with truth.
 
 Counts the corners of true facets in plan. The standard deviation of a turn and the weight stay as they are: truth has
-no error of measurement, and the weight is what models of the scenes became best with. Needs numpy.
+no error of measurement, and the weight is what models of the scenes became best with.
 """
-import argparse
 import json
-import pathlib
 
 import numpy as np
 
-TABLE = pathlib.Path(__file__).resolve().parent.parent / 'src' / 'evidence' / 'corners.json'
 LEAST_AREA_M2 = 4.0
 # Angles that are counted by themselves, and how far from them a corner still turns by them, degrees.
 FREQUENT, WITHIN = (45, 90, 135), 10
@@ -44,36 +37,20 @@ def rings_of(scene):
                 yield from [face['polygon'], *face['holes']]
 
 
+def table(scenes, before):
+    """How many corners there are, in words, and the table; `before` is the present one."""
+    count, counted = fitted([ring for scene in scenes for ring in rings_of(scene)])
+    return f'{count} corners of true facets', {**counted, 'sigma_deg': before['sigma_deg'], 'weight': before['weight']}
+
+
 def self_test():
     """An octagon, a square with a vertex within a side, and a triangle with two right angles and a half."""
     eighth = np.radians(np.arange(0, 360, 45))
     octagon = np.c_[np.cos(eighth), np.sin(eighth)] / (2 * np.sin(np.pi / 8))
     square = [[0, 0], [1, 0], [2, 0], [2, 2], [0, 2]]
     triangle = [[0, 0], [1, 0], [0, 1]]
-    corners, table = fitted([octagon, square, triangle])
-    share = {t['degrees']: t['share'] for t in table['turns']}
-    assert corners == 15 and share == {45.0: 0.533, 90.0: 0.333, 135.0: 0.133} and abs(table['others']) < 0.002, table
-    assert table['per_m'] == round(15 / (8 + 8 + 2 + 2**0.5), 3)
+    count, found = fitted([octagon, square, triangle])
+    share = {t['degrees']: t['share'] for t in found['turns']}
+    assert count == 15 and share == {45.0: 0.533, 90.0: 0.333, 135.0: 0.133} and abs(found['others']) < 0.002, found
+    assert found['per_m'] == round(15 / (8 + 8 + 2 + 2**0.5), 3)
     print('planted corners are counted')
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--scenes', type=pathlib.Path)
-    parser.add_argument('--only', help='names of scenes, separated by commas')
-    parser.add_argument('--self-test', action='store_true')
-    args = parser.parse_args()
-    if args.self_test:
-        return self_test()
-    names = args.only.split(',') if args.only else sorted(p.name for p in args.scenes.glob('r*'))
-    corners, counted = fitted([ring for name in names for ring in rings_of(args.scenes / name)])
-    seeds = ', '.join(sorted((n.lstrip('r') for n in names), key=lambda n: (len(n), n)))
-    present = json.loads(TABLE.read_text())
-    table = {'source': f'{corners} corners of true facets of seeds {seeds}, by tests/corners.py', **counted,
-             'sigma_deg': present['sigma_deg'], 'weight': present['weight']}
-    TABLE.write_text(json.dumps(table, indent=1) + '\n')
-    print(json.dumps(table, indent=1))
-
-
-if __name__ == '__main__':
-    main()

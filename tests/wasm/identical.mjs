@@ -2,7 +2,7 @@
 // every file byte for byte (report.json without its part `seconds`). One scene has a point cloud (LAZ) besides. So is the orientation of drawn photographs with
 // ground control points, by two orienters that divide the pairs. What model.glb is wrong in, the validator of glTF's makers says.
 //
-//   node tests/identical.mjs BINARY [SCENE]     by default the demo's, and the synthetic scenes of the tests, which the
+//   node tests/wasm/identical.mjs BINARY [SCENE]     by default the demo's, and the synthetic scenes of the tests, which the
 //                                               example `synthetic` beside the binary writes
 //
 // Ends with exit code 1 and the names of the files that differ or are wrong.
@@ -16,7 +16,7 @@ import { addFiles, openOrienter, openSession, root } from "./session.mjs";
 
 const [binary, given] = process.argv.slice(2);
 if (!binary) {
-    console.error("usage: node tests/identical.mjs BINARY [SCENE]");
+    console.error("usage: node tests/wasm/identical.mjs BINARY [SCENE]");
     process.exit(2);
 }
 

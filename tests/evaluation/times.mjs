@@ -1,13 +1,13 @@
 // The time of every stage in wasm, and how many windows the sweep correlates a second, on one core:
 //
-//   taskset -c 0 node tests/times.mjs SCENE [--method lines|rectangles|combined|coplanar|adjacency] [--package FOLDER]
+//   taskset -c 0 node tests/evaluation/times.mjs SCENE [--method lines|rectangles|combined|coplanar|adjacency] [--package FOLDER]
 //
 // Prints Markdown. The sweep's own time is what the half-planes stage takes less when nothing is high enough to be swept: finding the
 // ground and the points of interest remain.
 
 import { basename, resolve } from "node:path";
 import { parseArgs } from "node:util";
-import { addFiles, openSession } from "./session.mjs";
+import { addFiles, openSession } from "../wasm/session.mjs";
 
 const wish = { type: "string" };
 const { values, positionals } = parseArgs({ allowPositionals: true, options: { method: wish, package: wish } });

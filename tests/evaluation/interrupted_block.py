@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Runs cluster/Snakefile on a small block while processes are killed (kill -9) at random moments: in turn one that works
+"""Runs examples/cluster/Snakefile on a small block while processes are killed (kill -9) at random moments: in turn one that works
 on a tile, Snakemake itself, and any. Every tile is killed when it is first tried, besides. Tried again with more memory,
 and resumed, it gives the bytes of undisturbed commands.
 
-    python3 tests/cluster.py --binary target/debug/ridgeline [--snakemake "python3 -m snakemake"] [--kills 3] [--seed 1]
+    python3 tests/evaluation/interrupted_block.py --binary target/debug/ridgeline [--snakemake "python3 -m snakemake"] [--times 3] [--seed 1]
 
 Says that it skips where there is no Snakemake (pip install snakemake), or no /proc that tells processes.
 """
@@ -19,7 +19,7 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Two tiles of the planted house, and one that nothing shows.
 OPTIONS = "--roi=-31,-31,200,31 --ground-z 0"
 TILE_M = "120"
@@ -126,7 +126,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--binary", required=True, type=pathlib.Path)
     parser.add_argument("--snakemake", default=os.environ.get("SNAKEMAKE", f"{sys.executable} -m snakemake"))
-    parser.add_argument("--kills", type=int, default=3)
+    parser.add_argument("--times", type=int, default=3)
     parser.add_argument("--seed", type=int, default=1)
     args = parser.parse_args()
     engine = shlex.split(args.snakemake)
@@ -154,11 +154,11 @@ def main():
         )
         program.chmod(0o755)
         config = [f"scene={scene}", f"tile={TILE_M}", f"options={OPTIONS}", f"ridgeline={program}"]
-        command = [*engine, "-s", ROOT / "cluster/Snakefile", "-c2", "--nolock", "--rerun-incomplete", "--config", *config]
+        command = [*engine, "-s", ROOT / "examples/cluster/Snakefile", "-c2", "--nolock", "--rerun-incomplete", "--config", *config]
         work = folder / "work"
         work.mkdir()
         start = time.monotonic()
-        killer = Killer(work, args.kills, seconds, args.seed)
+        killer = Killer(work, args.times, seconds, args.seed)
         log_path = folder / "log"
         runs = 0
         # A tile that is killed three times ends Snakemake, as does a kill of its own; then it is run again.
@@ -188,7 +188,7 @@ def main():
         if "mem_mb=200," not in text or "mem_mb=400," not in text:
             sys.exit(f"no second try with more memory:\n{text}")
         of_tiles = [process for process in killer.met if process.tile]
-        if len(of_tiles) < -(-args.kills // len(TURNS)):
+        if len(of_tiles) < -(-args.times // len(TURNS)):
             sys.exit(f"only {len(of_tiles)} kills met `ridgeline tile`")
         # What a killed Snakemake had started may still be running.
         while processes_in(work):

@@ -1,14 +1,14 @@
 // The memory that the page's core takes for a scene, beside what it states before it starts: the wasm memory of the worker that
 // runs the stages, and of each that helps it (wasm memory never shrinks: what it has at the end is its peak).
 //
-//   node tests/memory.mjs SCENE [--roi x0,y0,x1,y1] [--ground-z Z] [--method lines|rectangles] [--workers N] [--tile M]
+//   node tests/evaluation/memory.mjs SCENE [--roi x0,y0,x1,y1] [--ground-z Z] [--method lines|rectangles] [--workers N] [--tile M]
 //                         [--package FOLDER]
 //
 // Prints a row of the table in docs/results.md; exit code 1 where more was taken than stated.
 
 import { basename, resolve } from "node:path";
 import { parseArgs } from "node:util";
-import { addFiles, openSession } from "./session.mjs";
+import { addFiles, openSession } from "../wasm/session.mjs";
 
 const wish = { type: "string" };
 const { values, positionals } = parseArgs({

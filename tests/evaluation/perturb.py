@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Score every scene many times over, with noise, exposure, turned images and views left out.
 
-    python3 tests/jury.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
+    python3 tests/evaluation/perturb.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
                           [--out FILE.json] [--against FILE.json]
 
 One run of a scene is one throw of the dice: a change of a few centimetres at the end of a line may flip a facet.
@@ -26,7 +26,7 @@ import numpy as np
 from PIL import Image
 
 import score_table
-from on_scenes import names_of, parser_of
+from shared.on_scenes import MEASURES, ROOT, names_of, parser_of
 
 # What is done to the images: standard deviation of the noise (of 255), largest change of exposure and gamma,
 # are they turned by quarters, quality of the JPEG, is its colour halved in size (4:2:0).
@@ -44,14 +44,6 @@ STORED = {
 }
 # With this many views or fewer a run says more about the scene than about the method.
 FEWEST = 5
-MEASURES = {
-    'complete': lambda s: s['faces']['gt_10m2']['completeness'],
-    'correct': lambda s: s['faces']['gt_10m2']['correctness'],
-    'area within 0.2 m': lambda s: s['area']['covered_within_0_2m_fraction'],
-    'roof edges': lambda s: s['lines']['edge_length_covered'],
-    'wrong lines': lambda s: s['lines']['wrong'],
-    'outline [m]': lambda s: s['faces']['geometry']['rms_outline_m'],
-}
 # Of real scenes, which have no truth but planes and tie points to check by.
 REAL_MEASURES = {
     'planes found': lambda s: s['planes_found'] / len(s['planes']),
@@ -63,18 +55,18 @@ REAL_MEASURES = {
 
 def main():
     parser = parser_of(__doc__)
-    parser.add_argument('--out', type=pathlib.Path, default=score_table.ROOT / 'target' / 'jury.json')
+    parser.add_argument('--out', type=pathlib.Path, default=ROOT / 'target' / 'perturbed.json')
     parser.add_argument('--against', type=pathlib.Path)
     args = parser.parse_args()
     scorer = args.scenes.parent / 'score'
     if not args.scenes.is_dir() or not scorer.is_dir():
-        print(f'jury: skipped, there is no {args.scenes} with a {scorer} beside it')
+        print(f'perturb: skipped, there is no {args.scenes} with a {scorer} beside it')
         return 0
     scenes = [args.scenes / name for name in names_of(args)]
     jobs = [job for scene in scenes if (scene / 'truth').is_dir() for job in jobs_of(scene)]
     jobs += [job for scene in scenes if (scene / 'check').is_dir() for job in real_jobs_of(scene)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        scores = list(pool.map(functools.partial(judge, args.binary.resolve(), scorer), jobs))
+        scores = list(pool.map(functools.partial(scored, args.binary.resolve(), scorer), jobs))
     runs = {job['name']: {'group': job['group'], **score} for job, score in zip(jobs, scores) if score}
     args.out.write_text(json.dumps(runs, indent=1))
     before = json.loads(args.against.read_text()) if args.against else None
@@ -130,7 +122,7 @@ def pieces(scene):
 
 def changed_scene(scene, change, noise=0.0, exposure=0.0, turned=False, quality=95, halved=False):
     """A copy of the scene with other images; the same each time."""
-    copy = score_table.ROOT / 'target' / 'jury' / f'{scene.name}-{change}'
+    copy = ROOT / 'target' / 'perturbed' / f'{scene.name}-{change}'
     shutil.rmtree(copy, ignore_errors=True)
     (copy / 'images').mkdir(parents=True)
     cameras = json.loads((scene / 'cameras.json').read_text())
@@ -157,9 +149,9 @@ def turn(image, view):
     return np.rot90(image)
 
 
-def judge(binary, scorer, job):
+def scored(binary, scorer, job):
     """The measures of one run; None when it failed."""
-    out = score_table.ROOT / 'target' / 'jury' / 'out' / job['name'].replace(' ', '_')
+    out = ROOT / 'target' / 'perturbed' / 'out' / job['name'].replace(' ', '_')
     views = ['--views', ','.join(job['views'])] if job['views'] else []
     done = subprocess.run([binary, 'reconstruct', job['scene'], '--out', out, *views], capture_output=True, text=True)
     if done.returncode:

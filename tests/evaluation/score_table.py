@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Reconstruct every scene of a folder, score it against its truth, and print one table.
 
-    python3 tests/score_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
+    python3 tests/evaluation/score_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
 
 FOLDER holds one folder per scene; beside it lies `score/` with score.py, score2d.py (scenes with truth/)
 and check_real.py (scenes with check/), which need numpy and shapely. The tables between the markers of
@@ -10,7 +10,6 @@ the program says so and ends well.
 """
 import csv
 import json
-import pathlib
 import statistics
 import subprocess
 import sys
@@ -19,10 +18,8 @@ import zlib
 
 import numpy as np
 
-import half_planes
-import line_sigmas
-
-from on_scenes import parser_of
+from shared import against_truth
+from shared.on_scenes import ROOT, parser_of
 
 # Scenes that are reconstructed without one view, and the places of these views.
 LEFT_OUT = {'detached': (0, 3), 'suburb': (0, 3)}
@@ -30,7 +27,6 @@ LEFT_OUT = {'detached': (0, 3), 'suburb': (0, 3)}
 # A tie point is beside a line from which it is no farther in plan, and at its height if no farther from that, metres.
 BESIDE_M, AT_HEIGHT_M = 0.5, 0.3
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / 'docs' / 'results.md'
 OUT = ROOT / 'target' / 'score'
 
@@ -68,7 +64,7 @@ def main():
         'rectangles': rectangle_table([(r, faces(scorer, r)) for r in rectangle_runs]),
         'combined': combined_table(scorer, [('', of_scene(r, rectangle_runs, combined)) for r in runs
                                               if (r['scene'] / 'truth').is_dir()] + left_out),
-        'halfplanes': half_plane_table([(r, half_planes.angles(scorer, r['scene'], r['out'])) for r in runs
+        'halfplanes': half_plane_table([(r, against_truth.angles(scorer, r['scene'], r['out'])) for r in runs
                                         if (r['scene'] / 'truth').is_dir() and not r['failed']]),
         'real': real_table([(r, check(scorer, r)) for r in runs if (r['scene'] / 'check').is_dir()]),
     }
@@ -154,7 +150,7 @@ def lines(scorer, run):
     length = sum(sum((a - b) ** 2 for a, b in zip(line['p0'], line['p1'])) ** 0.5 for line in matched)
     return {**counts, 'length': length, 'merged': with_support('merged'), 'grown': with_support('grown'),
             'new': len(found) - len(matched), 'scores': scored('matched.json'), 'all': scored('lines.json'),
-            'sigmas': truth and line_sigmas.errors_in_sigmas(scorer, run['scene'], matched)}
+            'sigmas': truth and against_truth.errors_in_sigmas(scorer, run['scene'], matched)}
 
 
 def faces(scorer, run):

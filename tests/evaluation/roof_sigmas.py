@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How the errors of facets and corners compare with the standard deviations that model.city.json states.
 
-    python3 tests/roof_sigmas.py SCORER RESULTS SCENE...
+    python3 tests/evaluation/roof_sigmas.py score.py RESULTS SCENE...
 
 RESULTS has a folder with model.city.json for every scene, named as the scene's. A facet is compared
 with the true one of which it covers most, if its plane is that one's by the scorer's definitions: its
@@ -13,10 +13,13 @@ of errors within one and two standard deviations (68 and 95 % where they are rig
 error and standard deviation. calibrate.py fits src/evidence/uncertainty.json by the same comparison.
 Needs numpy and shapely.
 """
+import argparse
 import json
 import math
 import pathlib
 import sys
+
+from shared.on_scenes import loaded, move_to_truth
 
 # A corner farther away is not the same corner inexactly found, metres.
 NEAR_M = 0.5
@@ -28,13 +31,15 @@ EDGES = ('ridge', 'hip', 'valley', 'eave', 'rake')
 
 
 def main():
-    scorer, results, *scenes = [pathlib.Path(p) for p in sys.argv[1:]]
-    sys.path.insert(0, str(scorer.parent))
-    import score
-
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('scorer', type=pathlib.Path, help='score.py')
+    parser.add_argument('results', type=pathlib.Path)
+    parser.add_argument('scenes', type=pathlib.Path, nargs='+')
+    args = parser.parse_args()
+    score = loaded(args.scorer)
     found = {kind: [] for kind in (*KINDS, 'outline')}
-    for scene in scenes:
-        path = results / scene.name / 'model.city.json'
+    for scene in args.scenes:
+        path = args.results / scene.name / 'model.city.json'
         if path.is_file():
             for kind, errors in compare(score, scene, path).items():
                 found[kind] += errors
@@ -80,7 +85,7 @@ def compare(score, scene, path):
             along = (true.abc[0] * face.abc[0] + true.abc[1] * face.abc[1]) / slope
             turn = math.degrees(math.atan(slope) - math.atan(along))
             found['slope'].append((turn, surface['slopeSigmaDeg'], math.degrees(pixel / math.sqrt(face.poly.area))))
-        move = min((np.zeros(3), -origin), key=lambda m: np.linalg.norm((ring[0] + m - centre)[:2]))
+        move = np.array(move_to_truth(ring[0], centre, origin))
         corners = np.array([(p[0], p[1], true.z(p[0], p[1])) for p in list(true.poly.exterior.coords)[:-1]])
         for corner, sigma in zip(ring + move, surface['cornerSigma']):
             apart = corners - corner

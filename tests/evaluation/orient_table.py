@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Orients photographs alone and compares with cameras that are known: the tables of docs/results.md, "Photographs alone".
 
-    python3 tests/orient_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...] [--lens K1,K2]
-    python3 tests/orient_table.py --binary target/release/ridgeline --photographs FOLDER --against MODEL
+    python3 tests/evaluation/orient_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...] [--lens K1,K2]
+    python3 tests/evaluation/orient_table.py --binary target/release/ridgeline --photographs FOLDER --against MODEL
 
 FOLDER of scenes holds one folder per scene with images/ and cameras.json (K, R, C; truth/cameras_true.json where that is
 more exact). Their photographs are resampled through a lens with the radial terms K1, K2 (of COLMAP's RADIAL; 0,0 leaves

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Fit the tables of src/evidence (lines, facets, rectangles, windows, lines in the model, surfaces) to scenes of which the truth is known.
+"""Fit the tables of src/evidence to scenes of which the truth is known.
 
-    python3 tests/calibrate.py --binary target/release/ridgeline [--scenes NAME,...]
+    python3 tests/evaluation/calibrate.py --binary target/release/ridgeline [--scenes NAME,...]
                                [--fit FOLDER] [--more FOLDER] [--dry] [--keep]
-    python3 tests/calibrate.py --self-test
+    python3 tests/evaluation/calibrate.py --self-test
 
 Every scene runs four times: with all line candidates accepted, with all facet candidates
 accepted, with all planes between parallel lines as candidates, and as it is, which gives the facets that are found once others were rejected, and the
@@ -12,11 +12,11 @@ their seed, that of --more (../shared/scenes) those of FITTED; beside them lies 
 score.py, by whose definitions a candidate is true. Printed are area under the ROC curve and expected calibration error of the
 present tables, which may know these scenes, and of the new ones, cross-validated by scene. Written
 are src/evidence/*.json and docs/calibration-*.svg (--dry: nothing; --keep takes runs that are there
-already). Other lines make other facets: build and run again until the tables stay. Needs numpy,
-scipy and shapely.
+already). Other lines make other facets: build and run again until the tables stay. What
+stands on roofs and how their outlines turn is fitted without a run (shared/clutter.py, shared/corners.py). Needs numpy, scipy,
+Pillow and shapely.
 """
 import argparse
-import importlib.util
 import json
 import math
 import re
@@ -26,11 +26,11 @@ import sys
 
 import numpy as np
 
-import logistic
 import roof_sigmas
-from growth import HEIGHT, LEFT, TOP, WIDTH, document
+from shared import clutter, corners, logistic
+from shared.on_scenes import ROOT, loaded, move_to_truth
+from shared.plots import HEIGHT, LEFT, TOP, WIDTH, document
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 TABLES = ROOT / 'src' / 'evidence'
 RUNS = ROOT / 'target' / 'calibrate'
 # Beside the random ones; looked at while the method is improved, so that they judge nothing any more.
@@ -95,6 +95,8 @@ def main():
     if args.self_test:
         windows_self_test()
         uncertainty_self_test()
+        clutter.self_test()
+        corners.self_test()
         return logistic.self_test()
     scenes, scorer = scenes_of(args), args.more.parent / 'score' / 'score.py'
     if not scorer.is_file() or len(scenes) < 2:
@@ -121,6 +123,7 @@ def main():
         calibrate(args, kind, candidates)
     calibrate_windows(args, facets)
     calibrate_uncertainty(args, truth, scenes)
+    calibrate_roofs(args, [scene for scene in scenes if kind_of(scene.name) == 'random'])
     return 0
 
 
@@ -139,13 +142,6 @@ def scenes_of(args):
 
 def kind_of(name):
     return 'real' if name.startswith('real') else 'random' if name[0] == 'r' and name[1:].isdigit() else 'old'
-
-
-def loaded(scorer):
-    spec = importlib.util.spec_from_file_location('score', scorer)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def run(args, scene, how):
@@ -169,10 +165,10 @@ def run(args, scene, how):
 def to_truth(scene, points):
     """How far to move points of a run into the frame of the truth: it stands there already, or with the map's origin added."""
     roofs = json.loads((scene / 'truth' / 'roofs.json').read_text())
-    origin = np.array(roofs.get('origin', [0, 0, 0]), float)
+    origin = roofs.get('origin', [0, 0, 0])
     middle = np.mean([p[:3] for b in roofs['buildings'] for f in b['faces'] for p in f['polygon']], axis=0)
     seen = np.median(points, axis=0)
-    return min((np.zeros(3), -origin), key=lambda move: np.linalg.norm((seen + move - middle)[:2]))
+    return np.array(move_to_truth(seen, middle, origin))
 
 
 def values_of(candidate):
@@ -528,6 +524,19 @@ def inflation(error, adjusted, pixel):
         sigma = np.hypot(scale * adjusted, floor * pixel)
         return sum((np.mean(np.abs(error) <= times * sigma) - share) ** 2 for times, share in zip((1, 2), NORMAL))
     return min(((scale, floor) for scale in SCALES for floor in FLOORS_PX), key=lambda at: miss(*at))
+
+
+def calibrate_roofs(args, scenes):
+    """Fits what stands on roofs, and how their outlines turn, to the truth of scenes and their photographs, and writes it."""
+    if not scenes:
+        return
+    for kind, of in (('clutter', clutter), ('corners', corners)):
+        path = TABLES / f'{kind}.json'
+        count, table = of.table(scenes, json.loads(path.read_text()))
+        table = {'source': f'{count} of {told_scenes(scene.name for scene in scenes)}', **table}
+        print(f'{kind}: {table}')
+        if not args.dry:
+            path.write_text(json.dumps(table, indent=1) + '\n')
 
 
 def uncertainty_self_test():

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """What the program takes: against another commit in pairs, against peers, and how it grows; writes docs/bench.md.
 
-    python3 tests/bench.py --binary target/release/ridgeline --scenes FOLDER [--before COMMIT] [--scene FOLDER]
+    python3 tests/evaluation/bench.py --binary target/release/ridgeline --scenes FOLDER [--before COMMIT] [--scene FOLDER]
                            [--flight FOLDER] [--rounds 5] [--only pairs,peers,growth] [--page docs/bench.md]
-    python3 tests/bench.py --self-test
+    python3 tests/evaluation/bench.py --self-test
 
 pairs: the scene (SCENES/suburb, else the demo) by this program and, of --before, that of another commit, built once in a
 worktree of its own and kept in target/bench/programs (a program's path is taken as it is); as by default, and with lines as
@@ -26,12 +26,11 @@ import textwrap
 import time
 from functools import partial
 
-import growth_runs
-import timed_runs
-from growth_runs import over_area, over_photographs, over_views
-from timed_runs import in_turns, known, median_of, ratio_of, reconstruct, run, spread, stages_of_wasm
+from shared import growth_runs, timed_runs
+from shared.growth_runs import over_area, over_photographs, over_views
+from shared.on_scenes import ROOT
+from shared.timed_runs import in_turns, known, median_of, ratio_of, reconstruct, run, spread, stages_of_wasm
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 KEPT = ROOT / 'target' / 'bench'
 PARTS = ['pairs', 'peers', 'growth']
 # What finds planes besides lines, and may be left out.
@@ -189,7 +188,7 @@ def ways(args):
     variants = {'two threads': lambda: reconstruct(args.binary, args.scene, threads=2)}
     if shutil.which('node') and (ROOT / 'www' / 'src' / 'pkg' / 'ridgeline_bg.wasm').is_file():
         def wasm():
-            found = run(['node', ROOT / 'tests' / 'times.mjs', args.scene])
+            found = run(['node', ROOT / 'tests' / 'evaluation' / 'times.mjs', args.scene])
             return {**found, 'stages': stages_of_wasm(found['text'])}
         variants['wasm'] = wasm
     return variants
@@ -219,7 +218,7 @@ def ways_table(found):
         lines += ['', 'Not in wasm: there is no Node or no package in www/src/pkg (`make build`).']
     else:
         profile = next((path.name for path in (ROOT / 'target' / 'stamps').glob('profile-*')), None)
-        lines += ['', f'wasm: one instance in Node{f" ({profile})" if profile else ""}, `tests/times.mjs`; Node compiles it on the '
+        lines += ['', f'wasm: one instance in Node{f" ({profile})" if profile else ""}, `tests/evaluation/times.mjs`; Node compiles it on the '
                   'same core while it runs, which short stages feel most.']
     return lines
 
@@ -245,7 +244,7 @@ def peers(args):
         def theirs():
             options = ['--segments', path, '--model', model] if model else []
             try:
-                found = run([python, ROOT / 'tests' / 'peers.py', '--images', images, *options])
+                found = run([python, ROOT / 'tests' / 'evaluation' / 'shared' / 'peers.py', '--images', images, *options])
             except RuntimeError as why:
                 return {what: {'failed': last_line(str(why))} for what in ('segments', 'lines')}
             return json.loads(found['text'].splitlines()[-1])
@@ -367,7 +366,7 @@ def heading(args, before, shares):
     now = git('describe', '--always', '--dirty', '--exclude', '*')
     # A program's path says nothing to a reader.
     pair = '' if not before else ' against another program' if pathlib.Path(args.before).is_file() else f' against {args.before}'
-    lines = ['# Time and memory', '', f'Written by `make bench` (`tests/bench.py`): {now}{pair}, {args.rounds} '
+    lines = ['# Time and memory', '', f'Written by `make bench` (`tests/evaluation/bench.py`): {now}{pair}, {args.rounds} '
              f'round{"s" * (args.rounds > 1)} in turns, on {cores()}. Seconds and megabytes are medians.']
     least = min(shares, default=1)
     if least < UNDISTURBED:

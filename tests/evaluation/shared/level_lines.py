@@ -9,7 +9,6 @@ direction in plan; errors of lines are well below that.
 The frame of photographs that were oriented by themselves is level to a degree only, and a degree is 17 cm over 10 m. The two
 inclinations that suit the lines of all views best (sum of the absolute differences) are taken off on photographs.
 """
-import json
 import math
 
 # At an edge: parallel in plan, the middle beside it and above or below it, in ground pixels. The latter two as in accuracy.py.

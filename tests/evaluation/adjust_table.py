@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Turn, move and shift one view of every scene a little, and see whether the adjustment takes it back.
 
-    python3 tests/adjust_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...] [--models]
+    python3 tests/evaluation/adjust_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...] [--models]
 
 FOLDER holds one folder per scene with images/ and cameras.json (K, R, C). Prints a table for docs/formats.md: how far
 the error moves the view's image, what is left of it in the other views' world, and, with --models, the score of the model
@@ -16,7 +16,7 @@ import tempfile
 
 import numpy as np
 
-from on_scenes import names_of, parser_of
+from shared.on_scenes import names_of, parser_of
 
 PLANTED = {'none': {}, 'turned 0.02 degrees': {'turn': 0.02}, 'moved 0.1 m': {'move': 0.1}, 'shifted 1.5 px': {'shift': 1.5}}
 

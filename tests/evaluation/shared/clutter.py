@@ -1,18 +1,11 @@
-#!/usr/bin/env python3
-"""Fit src/evidence/clutter.json, how the heights at which views agree lie about a roof, to rendered scenes with truth.
-
-    python3 tests/clutter.py --scenes FOLDER [--only NAMES]
-    python3 tests/clutter.py --self-test
+"""Fits src/evidence/clutter.json, how the heights at which views agree lie about a roof, to rendered scenes with truth.
 
 The windows inside every true facet are compared in all views at heights from 1.2 m below it to 1.6 m above. Numbers of
 the table are those under which the true height is likeliest among all (src/buildings/parapets.rs has the model); a tenth
-of the facets may be beyond it. The share of rims stays as it is: it counts what was found, not what is true. Needs numpy,
-scipy, Pillow and shapely.
+of the facets may be beyond it. The share of rims stays as it is: it counts what was found, not what is true.
 """
-import argparse
 import itertools
 import json
-import pathlib
 import sys
 
 import numpy as np
@@ -21,7 +14,6 @@ from scipy.ndimage import map_coordinates, uniform_filter
 from shapely import contains_xy
 from shapely.geometry import Polygon
 
-TABLE = pathlib.Path(__file__).resolve().parent.parent / 'src' / 'evidence' / 'clutter.json'
 # As in src/photoconsistency: cells of a window's side, and their width, metres.
 WINDOW, STEP_M = 11, 0.08
 HEIGHTS = np.arange(-1.2, 1.61, 0.1)
@@ -108,6 +100,19 @@ def facets_of(scene):
                 yield (*found, len(views))
 
 
+def table(scenes, before):
+    """How many facets there are, in words, and the table; `before` is the present one."""
+    facets = []
+    for scene in scenes:
+        facets.extend(facets_of(scene))
+        print(scene.name, len(facets), 'facets so far', file=sys.stderr, flush=True)
+    now = loss(facets, *(before[name] for name in ('pixels', 'above', 'elsewhere', 'highest_m')))
+    best, pixels, above, elsewhere, highest_m = fitted(facets)
+    print(f'loss {now:.3f} -> {best:.3f} nats a facet')
+    found = {'pixels': pixels, 'above': above, 'elsewhere': elsewhere, 'highest_m': highest_m, 'rims': before['rims']}
+    return f'windows inside {len(facets)} true facets', found
+
+
 def self_test():
     """Roofs with weak texture and much that stands on them are found, and better than if nothing stood on roofs."""
     random = np.random.default_rng(7)
@@ -123,30 +128,3 @@ def self_test():
     pixels, _, elsewhere, reach_m = numbers
     assert loss(facets, *numbers) < loss(facets, pixels, 0.0, elsewhere, reach_m), 'what stands on roofs explains nothing'
     print('planted roofs are found below what stands on them')
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--scenes', type=pathlib.Path)
-    parser.add_argument('--only', help='names of scenes, separated by commas')
-    parser.add_argument('--self-test', action='store_true')
-    args = parser.parse_args()
-    if args.self_test:
-        return self_test()
-    names = args.only.split(',') if args.only else sorted(p.name for p in args.scenes.glob('r*'))
-    facets = []
-    for name in names:
-        facets.extend(facets_of(args.scenes / name))
-        print(name, len(facets), 'facets so far', file=sys.stderr, flush=True)
-    before = json.loads(TABLE.read_text())
-    now = loss(facets, before['pixels'], before['above'], before['elsewhere'], before['highest_m'])
-    best, pixels, above, elsewhere, highest_m = fitted(facets)
-    seeds = ', '.join(name.removeprefix('r') for name in names)
-    table = {'source': f'windows inside {len(facets)} true facets of seeds {seeds}, by tests/clutter.py',
-             'pixels': pixels, 'above': above, 'elsewhere': elsewhere, 'highest_m': highest_m, 'rims': before['rims']}
-    TABLE.write_text(json.dumps(table, indent=1) + '\n')
-    print(f'loss {now:.3f} -> {best:.3f} nats a facet: {table}')
-
-
-if __name__ == '__main__':
-    main()

@@ -1,4 +1,4 @@
-"""Runs of the program whose time is taken, in turns, and the statistics of pairs; `tests/bench.py` compares with them."""
+"""Runs of the program whose time is taken, in turns, and the statistics of pairs; `tests/evaluation/bench.py` compares with them."""
 
 import json
 import math
@@ -12,9 +12,9 @@ import sys
 import tempfile
 import time
 
-from growth import MEASURABLE_S
-
-# A stage's row in what `ridgeline reconstruct` and `tests/times.mjs` print.
+# Seconds below which the growth of a stage, or a ratio, cannot be told.
+MEASURABLE_S = 0.01
+# A stage's row in what `ridgeline reconstruct` and `tests/evaluation/times.mjs` print.
 ROW = re.compile(r'^(\w+) +(\d+\.\d+)(?: |$)')
 
 
@@ -70,7 +70,7 @@ def stages_of(text):
 
 
 def stages_of_wasm(text):
-    """The same of the row of Markdown that tests/times.mjs prints."""
+    """The same of the row of Markdown that tests/evaluation/times.mjs prints."""
     cells = re.findall(r'\| (\w+) (\d+\.\d+) s(?= \|)', text)
     return {name: float(seconds) for name, seconds in cells}
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Accuracy of matched lines against the number of views (B99 figure 9); writes docs/accuracy.svg and a table of docs/results.md.
 
-    python3 tests/accuracy.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
+    python3 tests/evaluation/accuracy.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
 
 Each scene with more than four views is reconstructed with its first 3, 4, 5, ... views. Only lines that were matched count, not
 those made from planes.
@@ -20,13 +20,11 @@ import statistics
 import subprocess
 import tempfile
 
-import level_lines
+from shared import level_lines
+from shared.level_lines import sub
+from shared.on_scenes import ROOT, names_of, parser_of
+from shared.plots import HEIGHT, LEFT, TOP, WIDTH, document
 
-from growth import HEIGHT, LEFT, TOP, WIDTH, document
-from level_lines import sub
-from on_scenes import names_of, parser_of
-
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#000000', '#56b4e9']
 # From one row of plots to the next.
 ROW = HEIGHT + 78

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Judge the program on random scenes that chose nothing, or two programs in pairs.
 
-    python3 tests/judge.py --binary target/release/ridgeline --seeds 518 to 530 [--before OTHER_BINARY]
+    python3 tests/evaluation/compare_on_seeds.py --binary target/release/ridgeline --seeds 518 to 530 [--before OTHER_BINARY]
                            [--generator ../shared/generate] [--drawn FOLDER]
 
 Draws the scenes of these seeds (500 to 999; those in docs/results.md have judged already) unless they stand in FOLDER
@@ -24,22 +24,14 @@ import time
 import numpy as np
 
 import calibrate
-import logistic
+from shared import logistic, on_scenes
+from shared.on_scenes import ROOT
 
-MEASURES = {
-    'complete': lambda s: s['faces']['gt_10m2']['completeness'],
-    'correct': lambda s: s['faces']['gt_10m2']['correctness'],
-    'area within 0.2 m': lambda s: s['area']['covered_within_0_2m_fraction'],
-    'outline [m]': lambda s: s['faces']['geometry']['rms_outline_m'],
-    'edges covered': lambda s: s['lines']['edge_length_covered'],
-    'wrong lines': lambda s: s['lines']['wrong'],
-    'time [s]': lambda s: s['seconds'],
-}
+MEASURES = {**on_scenes.MEASURES, 'time [s]': lambda s: s['seconds']}
 # Rays for a scene's pixels: as those in ../shared/scenes.
 SAMPLES = 6
 # Facets of this area and above count, square metres.
 LEAST_AREA_M2 = 10
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 RUNS = ROOT / 'target' / 'judge'
 
 
@@ -68,7 +60,7 @@ def main():
     print_means(scores)
     faces = [list(faces_of(scene, scores[-1][scene.name])) for scene in scenes if scene.name in both]
     print_kinds([face for of_scene in faces for face in of_scene])
-    truth = calibrate.loaded(scorer)
+    truth = on_scenes.loaded(scorer)
     print_calibration(truth, [scene for scene in scenes if scene.name in both], len(programs) - 1)
     return 0
 

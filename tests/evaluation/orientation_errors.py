@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Put the usual errors into the orientation of every scene, and see what the orientation check calls them.
 
-    python3 tests/orientation_errors.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
+    python3 tests/evaluation/orientation_errors.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
 
 FOLDER holds one folder per scene with images/ and cameras.json (K, R, C). Prints the table of docs/formats.md:
 a row for each mistake, a column for each scene; the first row is the sound scene, which must be left alone. A list of angles
@@ -18,7 +18,7 @@ import tempfile
 import numpy as np
 from PIL import Image
 
-from on_scenes import names_of, parser_of
+from shared.on_scenes import names_of, parser_of
 
 
 class NotExpressible(Exception):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How the time of a method grows with the number of images and with what they hold; writes docs/growth*.svg.
 
-    python3 tests/growth.py --binary target/release/ridgeline --scenes FOLDER [--method lines|rectangles]
+    python3 tests/evaluation/growth.py --binary target/release/ridgeline --scenes FOLDER [--method lines|rectangles]
 
 rectangles (W96): the stages over the number of images, house-gable with its first 3 to 6 views, and over the megapixels of
 three scenes of six views. lines (B99 3): segments, matching and 3D lines over the number of images, detached with its first
@@ -11,20 +11,21 @@ the median of three runs. Printed are also the powers with which they grow: slop
 script needs Python alone.
 """
 import json
-import math
 import os
 import pathlib
 import statistics
 import subprocess
 import tempfile
 
-from on_scenes import parser_of
+from shared.growth_runs import power
+from shared.on_scenes import ROOT, parser_of
+from shared.plots import HEIGHT, LEFT, TOP, WIDTH, document
+from shared.timed_runs import MEASURABLE_S
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Six images each: 256 x 256, 600 x 600 and 1200 x 1200.
 SIZES = ['house-gable', 'detached', 'suburb']
-# Runs of each, and the seconds below which the growth of a stage cannot be told.
-RUNS, MEASURABLE_S = 3, 0.01
+# Runs of each.
+RUNS = 3
 # Stages with colours that remain apart for the colour-blind (Okabe and Ito), what the second plot counts, and the file.
 METHODS = {
     'rectangles': {
@@ -67,13 +68,6 @@ def over_views(run, scenes, scene):
     return f'number of images ({scene})', [(m['views'], m['seconds']) for m in runs]
 
 
-def power(points):
-    """Slope of the line through the logarithms by least squares."""
-    logs = [(math.log(x), math.log(y)) for x, y in points]
-    mean_x, mean_y = (statistics.mean(log[i] for log in logs) for i in (0, 1))
-    return sum((x - mean_x) * (y - mean_y) for x, y in logs) / sum((x - mean_x) ** 2 for x, _ in logs)
-
-
 def measure(binary, scene, method, stages, *options):
     """Processor seconds of every stage, the medians of some runs."""
     runs = [measure_once(binary, scene, method, stages, *options) for _ in range(RUNS)]
@@ -103,7 +97,6 @@ def measure_once(binary, scene, method, stages, *options):
     return {'views': len(report['views']), 'megapixels': megapixels, 'segments': segments, 'seconds': seconds}
 
 
-WIDTH, HEIGHT, LEFT, TOP = 300, 190, 46, 16
 # From one row of plots to the next.
 ROW = HEIGHT + 60
 
@@ -155,14 +148,6 @@ def svg(plots, stages):
         f'<rect x="{LEFT + 10}" y="{TOP + 4 + 16 * k}" width="10" height="10" fill="{colour}" fill-opacity="0.75"/>'
         f'<text x="{LEFT + 26}" y="{TOP + 13 + 16 * k}">{s}</text>' for k, (s, colour) in enumerate(stages.items()))
     return document(plots, legend, below=(len(plots) - 1) // 2 * ROW)
-
-
-def document(plots, legend, below=0):
-    """Two plots side by side, with a legend; `below`: room below them for more."""
-    width, height = LEFT + 2 * WIDTH + 100, TOP + HEIGHT + 48 + below
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
-            f'font-family="sans-serif" font-size="12">\n<rect width="100%" height="100%" fill="white"/>\n'
-            + '\n'.join(plots) + '\n' + legend + '\n</svg>\n')
 
 
 if __name__ == '__main__':

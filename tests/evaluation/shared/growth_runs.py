@@ -1,13 +1,13 @@
 """How a run on one core grows with its views, with the area and with the photographs there are: the tables of
-`tests/bench.py`."""
+`tests/evaluation/bench.py`."""
 
+import math
 import pathlib
 import statistics
 import tempfile
 from functools import partial
 
-from growth import MEASURABLE_S, power
-from timed_runs import in_turns, reconstruct
+from shared.timed_runs import MEASURABLE_S, in_turns, reconstruct
 
 VIEWS = [3, 4, 6, 8]
 # Sides of the squares in the middle of the flight, metres: areas as 1 to 4 to 9 to 16.
@@ -79,6 +79,13 @@ def medians_of(runs):
               for stage in runs[0]['stages']}
     return {'stages': stages, 'views': runs[0]['views'], 'user': statistics.median(one['user'] for one in runs),
             'memory_mb': statistics.median(one['memory_mb'] for one in runs)}
+
+
+def power(points):
+    """Slope of the line through the logarithms by least squares."""
+    logs = [(math.log(x), math.log(y)) for x, y in points]
+    mean_x, mean_y = (statistics.mean(log[i] for log in logs) for i in (0, 1))
+    return sum((x - mean_x) * (y - mean_y) for x, y in logs) / sum((x - mean_x) ** 2 for x, _ in logs)
 
 
 def told_power(points):

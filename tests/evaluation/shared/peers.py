@@ -1,7 +1,7 @@
 """One round of what other programs take for the same, on one core: LSD and EDLines of OpenCV for segments, the line
-triangulation of LIMAP for 3D lines. `tests/bench.py` runs it by the Python of an environment that has them:
+triangulation of LIMAP for 3D lines. `tests/evaluation/bench.py` runs it by the Python of an environment that has them:
 
-    python tests/peers.py --images FOLDER [--segments segments.json --model FOLDER]
+    python tests/evaluation/shared/peers.py --images FOLDER [--segments segments.json --model FOLDER]
 
 Prints JSON. Decoding the images and starting the libraries is not counted. LIMAP gets our segments, the cameras of the
 COLMAP text model and all pairs of images, and has its own settings otherwise.
