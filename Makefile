@@ -11,7 +11,8 @@
 #   make interrupt  a block under Snakemake, interrupted TIMES (20) at random moments by SEED (1): the same bytes
 #   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
 #   make jury       all scenes many times over, changed a little each time; rewrites its tables there
-#   make judge      SEEDS (as "518 to 530") of random scenes that chose nothing; BEFORE=PROGRAM compares in pairs
+#   make judge      SEEDS (as "518 to 530") of random scenes that chose nothing; BEFORE=PROGRAM compares in pairs, PAGE=1
+#                   rewrites the section of docs/results.md
 #   make calibrate  fits the tables of src/evidence to scenes with truth, PYTHON (python3) with numpy, scipy, shapely, Pillow
 #   make bench      time and memory of every stage, against the commit BEFORE in pairs, beside other programs, and
 #                   how they grow; SCENE (SCENES/suburb), ROUNDS (5), FLIGHT; rewrites docs/bench.md
@@ -66,13 +67,14 @@ golden:
 	RIDGELINE_REWRITE=1 cargo test --lib page_table
 
 score: native
+	$(PYTHON) tests/evaluation/score_table.py --self-test
 	$(PYTHON) tests/evaluation/score_table.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
 
 jury: native
 	$(PYTHON) tests/evaluation/perturb.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
 
 judge: native
-	$(PYTHON) tests/evaluation/compare_on_seeds.py --binary target/release/ridgeline $(if $(BEFORE),--before $(BEFORE)) --seeds $(SEEDS)
+	$(PYTHON) tests/evaluation/compare_on_seeds.py --binary target/release/ridgeline $(if $(BEFORE),--before $(BEFORE)) --seeds $(SEEDS) $(if $(PAGE),--page)
 
 calibrate: native
 	$(PYTHON) tests/evaluation/calibrate.py --self-test

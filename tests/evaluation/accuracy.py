@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Accuracy of matched lines against the number of views (B99 figure 9); writes docs/accuracy.svg and a table of docs/results.md.
+"""Accuracy of matched lines against the number of views (B99 figure 9); writes docs/accuracy.svg and a table of docs/results/lines.md.
 
     python3 tests/evaluation/accuracy.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
 
@@ -20,7 +20,7 @@ import statistics
 import subprocess
 import tempfile
 
-from shared import level_lines
+from shared import level_lines, results_page
 from shared.level_lines import sub
 from shared.on_scenes import ROOT, names_of, parser_of
 from shared.plots import HEIGHT, LEFT, TOP, WIDTH, document
@@ -52,7 +52,7 @@ def main():
                 print(f'{name}, ' + told(m), flush=True)
     (ROOT / 'docs' / 'accuracy.svg').write_text(svg(curves))
     if not args.only:
-        rewrite(table(curves))
+        results_page.put_section(ROOT / 'docs' / 'results' / 'lines.md', 'level lines', table(curves))
 
 
 def matched_lines(binary, scene, names):
@@ -127,14 +127,6 @@ def table(curves):
         rows.append(f'| {name} | {cell("views", 0)} | {cell("level", 0)} | {cell("ends", 2)} | {cell("median", 2)} | '
                     f'{cell("ends_m", 3)} | {pair[0]["edges"]} | {cell("same", 2)} | {cell("same_m", 3)} |')
     return '\n'.join(rows)
-
-
-def rewrite(rows):
-    """Puts the table between its markers in docs/results.md."""
-    results = ROOT / 'docs' / 'results.md'
-    before, rest = results.read_text().split('<!-- level lines: begin -->')
-    after = rest.split('<!-- level lines: end -->')[1]
-    results.write_text(f'{before}<!-- level lines: begin -->\n{rows}\n<!-- level lines: end -->{after}')
 
 
 def ground_pixel(cameras, point):

@@ -2,9 +2,9 @@
 """Judge the program on random scenes that chose nothing, or two programs in pairs.
 
     python3 tests/evaluation/compare_on_seeds.py --binary target/release/ridgeline --seeds 518 to 530 [--before OTHER_BINARY]
-                           [--generator ../shared/generate] [--drawn FOLDER]
+                           [--generator ../shared/generate] [--drawn FOLDER] [--page]
 
-Draws the scenes of these seeds (500 to 999; those in docs/results.md have judged already) unless they stand in FOLDER
+Draws the scenes of these seeds (500 to 999; those in docs/results/fresh-seeds.md have judged already) unless they stand in FOLDER
 (~/.cache/ridgeline/scenes), reconstructs and scores them by the score.py beside the generator's folder, and prints: the
 means with the standard errors of the differences; the share of facets above 10 m2 that are found, by number of views,
 noise, kind of building and texture; and the calibration error of the probabilities of facets and of lines. The python
@@ -24,7 +24,7 @@ import time
 import numpy as np
 
 import calibrate
-from shared import logistic, on_scenes
+from shared import logistic, on_scenes, results_page
 from shared.on_scenes import ROOT
 
 MEASURES = {**on_scenes.MEASURES, 'time [s]': lambda s: s['seconds']}
@@ -42,6 +42,7 @@ def main():
     parser.add_argument('--seeds', required=True, nargs='+', help='numbers, and "A to B" for all between')
     parser.add_argument('--generator', type=pathlib.Path, default=ROOT.parent / 'shared' / 'generate')
     parser.add_argument('--drawn', type=pathlib.Path, default=pathlib.Path.home() / '.cache' / 'ridgeline' / 'scenes')
+    parser.add_argument('--page', action='store_true', help='rewrite the section of docs/results.md')
     args = parser.parse_args()
     seeds = seeds_of(' '.join(args.seeds))
     used = [seed for seed in seeds if not 500 <= seed <= 999]
@@ -58,6 +59,8 @@ def main():
     both = [name for name in scores[0] if all(name in of for of in scores)]
     scores = [{name: of[name] for name in both} for of in scores]
     print_means(scores)
+    if args.page:
+        results_page.put_section(results_page.RESULTS, 'seeds', section(' '.join(args.seeds), scores[-1]))
     faces = [list(faces_of(scene, scores[-1][scene.name])) for scene in scenes if scene.name in both]
     print_kinds([face for of_scene in faces for face in of_scene])
     truth = on_scenes.loaded(scorer)
@@ -111,6 +114,13 @@ def print_means(scores):
         print('|', name, '|', ' | '.join(f'{statistics.mean(known(values)):.3f}' for values in of), '|')
     if len(scores) == 2:
         print('| difference |', ' | '.join(difference(*pair) for pair in zip(*columns)), '|')
+
+
+def section(seeds, scores):
+    """What docs/results.md says of the program on these seeds."""
+    means = [f'{statistics.mean(known([measure(score) for score in scores.values()])):.2f}' for measure in on_scenes.MEASURES.values()]
+    return (f'Of program {results_page.program_here()}.\n\n'
+            + results_page.markdown([['seeds', 'scenes', *on_scenes.MEASURES], [seeds, str(len(scores)), *means]]))
 
 
 def known(values):

@@ -4,7 +4,7 @@
 //   node tests/evaluation/memory.mjs SCENE [--roi x0,y0,x1,y1] [--ground-z Z] [--method lines|rectangles] [--workers N] [--tile M]
 //                         [--package FOLDER]
 //
-// Prints a row of the table in docs/results.md; exit code 1 where more was taken than stated.
+// Prints a row of the table in docs/results/page.md; exit code 1 where more was taken than stated.
 
 import { basename, resolve } from "node:path";
 import { parseArgs } from "node:util";

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Orients photographs alone and compares with cameras that are known: the tables of docs/results.md, "Photographs alone".
+"""Orients photographs alone and compares with cameras that are known: the tables of docs/results/photographs-alone.md.
 
     python3 tests/evaluation/orient_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...] [--lens K1,K2]
     python3 tests/evaluation/orient_table.py --binary target/release/ridgeline --photographs FOLDER --against MODEL

@@ -7,7 +7,7 @@
 One run of a scene is one throw of the dice: a change of a few centimetres at the end of a line may flip a facet.
 The mean over runs that differ in what no method should depend on tells an improvement from luck. FOLDER is laid out as
 for score_table.py. `--against` compares with an earlier `--out`, run by run: the mean difference and its
-standard error. The tables of docs/results.md are rewritten when all scenes were run without `--against`. Needs numpy,
+standard error. Its tables in docs/results.md are rewritten when all scenes were run without `--against`. Needs numpy,
 Pillow and shapely.
 """
 import concurrent.futures
@@ -26,6 +26,7 @@ import numpy as np
 from PIL import Image
 
 import score_table
+from shared import results_page
 from shared.on_scenes import MEASURES, ROOT, names_of, parser_of
 
 # What is done to the images: standard deviation of the noise (of 255), largest change of exposure and gamma,
@@ -70,10 +71,11 @@ def main():
     runs = {job['name']: {'group': job['group'], **score} for job, score in zip(jobs, scores) if score}
     args.out.write_text(json.dumps(runs, indent=1))
     before = json.loads(args.against.read_text()) if args.against else None
-    tables = {'jury': table(runs, before, MEASURES), 'jury-real': table(runs, before, REAL_MEASURES)}
-    print(*tables.values(), sep='\n\n')
+    tables = [table(runs, before, measures) for measures in (MEASURES, REAL_MEASURES)]
+    print(*tables, sep='\n\n')
     if not args.only and not before:
-        score_table.rewrite(tables)
+        section = '\n\n'.join([f'Of program {results_page.program_here()}.', *tables])
+        results_page.put_section(results_page.RESULTS, 'perturbed', section)
     return 0 if len(runs) == len(jobs) else 1
 
 
@@ -172,9 +174,7 @@ def table(runs, before, measures):
         group = [(now, before[name] if before else None) for name, now in group if not before or name in before]
         cells = [cell([now[m] for now, _ in group], [then[m] for _, then in group] if before else None, m) for m in measures]
         rows.append([scene, str(views), str(len(group)), *cells])
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    lines = ['| ' + ' | '.join(text.ljust(width) for text, width in zip(row, widths)) + ' |' for row in rows]
-    return '\n'.join([lines[0], '|' + '|'.join('-' * (width + 2) for width in widths) + '|', *lines[1:]])
+    return results_page.markdown(rows)
 
 
 def cell(now, then, measure):

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Reconstruct every scene of a folder, score it against its truth, and print one table.
+"""Reconstruct every scene of a folder, score it against its truth, and write docs/results.md.
 
     python3 tests/evaluation/score_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
+    python3 tests/evaluation/score_table.py --self-test
 
 FOLDER holds one folder per scene; beside it lies `score/` with score.py, score2d.py (scenes with truth/)
-and check_real.py (scenes with check/), which need numpy and shapely. The tables between the markers of
-docs/results.md are rewritten when all scenes were run. Without FOLDER there is nothing to score, and
-the program says so and ends well.
+and check_real.py (scenes with check/), which need numpy and shapely. The tables stand in target/score/results.json, and the
+page is written when all scenes were run. Without FOLDER there is nothing to score, and the program says so and ends well.
 """
 import csv
 import json
@@ -18,7 +18,7 @@ import zlib
 
 import numpy as np
 
-from shared import against_truth
+from shared import against_truth, results_page
 from shared.on_scenes import ROOT, parser_of
 
 # Scenes that are reconstructed without one view, and the places of these views.
@@ -27,7 +27,6 @@ LEFT_OUT = {'detached': (0, 3), 'suburb': (0, 3)}
 # A tie point is beside a line from which it is no farther in plan, and at its height if no farther from that, metres.
 BESIDE_M, AT_HEIGHT_M = 0.5, 0.3
 
-RESULTS = ROOT / 'docs' / 'results.md'
 OUT = ROOT / 'target' / 'score'
 
 # B99, figures 5 to 7 with their text: scene, views, segments in all, of these matched, lines, wrong, supports a line, merged,
@@ -41,6 +40,8 @@ OF_THE_PAPER = [
 
 
 def main():
+    if sys.argv[1:] == ['--self-test']:
+        return self_test()
     args = parser_of(__doc__, only='names of scenes, separated by commas; docs/results.md is left alone').parse_args()
     scorer = args.scenes.parent / 'score'
     if not args.scenes.is_dir() or not scorer.is_dir():
@@ -56,24 +57,24 @@ def main():
                 if (args.scenes / name / 'truth').is_dir()]
     left_out = [(place, [run(args.binary.resolve(), r['scene'], method, all_but(r, place)) for method in ('lines', 'combined')])
                 for r in runs for place in LEFT_OUT.get(r['scene'].name, ()) if not r['failed']]
-    three_views = [run(args.binary.resolve(), r['scene'], views=first_views(r, 3)) for r in runs
-                   if not r['failed'] and len(report(r)['views']) > 3]
-    tables = {
-        'lines': line_table([(r, lines(scorer, r)) for r in runs + three_views]),
+    results = {'program': results_page.program_here(), 'tables': {
+        'lines': line_table([(r, lines(scorer, r)) for r in runs]),
         'rendered': rendered_table([(r, score(scorer, r)) for r in runs if (r['scene'] / 'truth').is_dir()]),
-        'rectangles': rectangle_table([(r, faces(scorer, r)) for r in rectangle_runs]),
         'combined': combined_table(scorer, [('', of_scene(r, rectangle_runs, combined)) for r in runs
                                               if (r['scene'] / 'truth').is_dir()] + left_out),
         'halfplanes': half_plane_table([(r, against_truth.angles(scorer, r['scene'], r['out'])) for r in runs
                                         if (r['scene'] / 'truth').is_dir() and not r['failed']]),
         'real': real_table([(r, check(scorer, r)) for r in runs if (r['scene'] / 'check').is_dir()]),
-    }
-    for table in tables.values():
-        print(table, end='\n\n')
+    }}
+    for rows in results['tables'].values():
+        print(results_page.markdown(rows), end='\n\n')
+    OUT.mkdir(parents=True, exist_ok=True)
+    (OUT / 'results.json').write_text(json.dumps(results, indent=1))
     if not args.only:
-        rewrite(tables)
+        results_page.RESULTS.write_text(results_page.page(results, results_page.RESULTS.read_text()))
+        print(f'{results_page.RESULTS.relative_to(ROOT)} written')
     more = [r for _, pair in left_out for r in pair]
-    return 1 if any(r['failed'] for r in runs + rectangle_runs + combined + three_views + more) else 0
+    return 1 if any(r['failed'] for r in runs + rectangle_runs + combined + more) else 0
 
 
 def run(binary, scene, method='lines', views=()):
@@ -114,10 +115,6 @@ def report(run):
     return json.loads((run['out'] / 'report.json').read_text())
 
 
-def first_views(run, count):
-    return [view['view'] for view in report(run)['views']][:count]
-
-
 def all_but(run, place):
     """The names of all views but the one at a place."""
     names = [view['view'] for view in report(run)['views']]
@@ -153,10 +150,6 @@ def lines(scorer, run):
             'sigmas': truth and against_truth.errors_in_sigmas(scorer, run['scene'], matched)}
 
 
-def faces(scorer, run):
-    return None if run['failed'] else tool(scorer, 'score', run, run['out'] / 'model.city.json')
-
-
 def check(scorer, run):
     checked = None if run['failed'] else tool(scorer, 'check_real', run, run['out'] / 'model.city.json')
     return checked and {**checked, 'lines_at_points': lines_at_points(run)}
@@ -183,8 +176,8 @@ def lines_at_points(run):
 def rendered_table(rows):
     header = ['scene', 'time [s]', 'edges in 2D', '3D lines', 'on roof edges', 'true', 'edges in 3D', 'facets > 10 m²',
               'complete', 'correct', 'area within 0.2 m', 'outline RMS [m]', 'height RMS [m]']
-    return markdown(header, [[r['scene'].name, f'{r["seconds"]:.1f}'] + (rendered_row(s) if s else ['failed'] + ['-'] * 10)
-                             for r, s in rows])
+    return [header] + [[r['scene'].name, f'{r["seconds"]:.1f}'] + (rendered_row(s) if s else ['failed'] + ['-'] * 10)
+                       for r, s in rows]
 
 
 def rendered_row(s):
@@ -201,7 +194,7 @@ def line_table(rows):
     header = ['scene', 'views', 'segments', 'of these matched', 'lines', 'wrong', 'supports a line', 'merged', 'grown', 'length [m]',
               'roof edges covered', 'within sigma', 'new lines', 'covered with them']
     ours = [[r['scene'].name] + (line_row(c) if c else ['failed'] + ['-'] * 12) for r, c in rows]
-    return markdown(header, [row + ['-'] * (len(header) - len(row)) for row in OF_THE_PAPER + ours])
+    return [header] + [row + ['-'] * (len(header) - len(row)) for row in OF_THE_PAPER + ours]
 
 
 def line_row(c):
@@ -215,7 +208,7 @@ def line_row(c):
 
 def half_plane_table(rows):
     header = ['scene', 'half-planes', 'on roofs', 'median angle [deg]', 'within 2 deg', 'within 5 deg', 'within sigma', 'within 2 sigma']
-    return markdown(header, [[r['scene'].name, *half_plane_row(*found)] for r, found in rows])
+    return [header] + [[r['scene'].name, *half_plane_row(*found)] for r, found in rows]
 
 
 def half_plane_row(found, count):
@@ -230,22 +223,9 @@ def half_plane_row(found, count):
             share(lambda angle, sigma: angle <= sigma), share(lambda angle, sigma: angle <= 2 * sigma)]
 
 
-def rectangle_table(rows):
-    header = ['scene', 'time [s]', 'facets > 10 m²', 'complete', 'correct', 'outline RMS [m]', 'height RMS [m]']
-    return markdown(header, [[r['scene'].name, f'{r["seconds"]:.1f}'] + (rectangle_row(s) if s else ['failed'] + ['-'] * 4)
-                             for r, s in rows])
-
-
-def rectangle_row(s):
-    large, geometry = s['faces']['gt_10m2'], s['faces']['geometry']
-    return [f'{large["found"]} of {large["reference"]}', percent(large['completeness']), percent(large['correctness']),
-            metres(geometry['rms_outline_m']), metres(geometry['rms_height_m'])]
-
-
 def combined_table(scorer, rows):
     """Methods beside each other, "lines / rectangles / combined"; rows of (place of the view left out, runs)."""
-    header = ['scene', 'views', 'facets > 10 m²', 'complete', 'correct', 'area within 0.2 m', 'roof edges covered', 'wrong lines']
-    table = []
+    table = [COMBINED_HEAD]
     for place, runs in rows:
         scene = runs[0]['scene']
         runs = runs if len(runs) == 3 else [runs[0], None, runs[1]]
@@ -253,9 +233,10 @@ def combined_table(scorer, rows):
                   for r in runs]
         table.append([scene.name, 'all' if place == '' else f'without the {("first", "second", "third", "fourth")[place]}']
                      + [' / '.join(cell(s) if s else '-' for s in scores) for cell in COMBINED_CELLS])
-    return markdown(header, table)
+    return table
 
 
+COMBINED_HEAD = ['scene', 'views', 'facets > 10 m²', 'complete', 'correct', 'area within 0.2 m', 'roof edges covered', 'wrong lines']
 COMBINED_CELLS = (
     lambda s: str(s['faces']['gt_10m2']['found']),
     lambda s: percent(s['faces']['gt_10m2']['completeness']),
@@ -269,8 +250,8 @@ COMBINED_CELLS = (
 def real_table(rows):
     header = ['scene', 'time [s]', 'facets', 'planes found', 'tie points on roofs', 'within 0.25 m', 'median height error [m]',
               'lines at tie points']
-    return markdown(header, [[r['scene'].name, f'{r["seconds"]:.1f}'] + (real_row(c) if c else ['failed'] + ['-'] * 5)
-                             for r, c in rows])
+    return [header] + [[r['scene'].name, f'{r["seconds"]:.1f}'] + (real_row(c) if c else ['failed'] + ['-'] * 5)
+                       for r, c in rows]
 
 
 def real_row(c):
@@ -287,23 +268,40 @@ def metres(x):
     return '-' if x is None else f'{x:.2f}'
 
 
-def markdown(header, rows):
-    table = [header, *rows]
-    widths = [max(len(row[i]) for row in table) for i in range(len(header))]
-    lines = ['| ' + ' | '.join(cell.ljust(w) for cell, w in zip(row, widths)) + ' |' for row in table]
-    lines.insert(1, '|' + '|'.join('-' * (w + 2) for w in widths) + '|')
-    return '\n'.join(lines)
-
-
-def rewrite(tables):
-    """Puts each table between its markers in docs/results.md."""
-    text = RESULTS.read_text()
-    for name, table in tables.items():
-        begin, end = f'<!-- {name}: begin -->', f'<!-- {name}: end -->'
-        before, rest = text.split(begin)
-        text = before + begin + '\n' + table + '\n' + end + rest.split(end)[1]
-    RESULTS.write_text(text)
-    print(f'{RESULTS.relative_to(ROOT)} rewritten')
+def self_test():
+    """Planted scores come out of the page, in their tables, and what other scripts have written stays."""
+    scene = {'scene': ROOT / 'planted', 'seconds': 1.25, 'failed': False}
+    scores = {
+        'lines': {'lines': 4321, 'precision_roof_edge': 0.111, 'precision_roof_edge_or_surface': 0.222, 'edge_length_covered': 0.333,
+                  'wrong': 0.0444},
+        'faces': {'gt_10m2': {'found': 55, 'reference': 66, 'completeness': 0.555, 'correctness': 0.666},
+                  'geometry': {'rms_outline_m': 0.77, 'rms_height_m': 0.88}},
+        'area': {'covered_within_0_2m_fraction': 0.999}, 'segments': [{'covered': 0.1}, {'covered': 0.3}],
+    }
+    supports = {'views': 6, 'segments': 200, 'matched segments': 50, 'lines': 100, 'supports': 450, 'length': 1234.4, 'merged': 0.12,
+                'grown': 0.34, 'new': 7, 'scores': scores['lines'], 'all': scores['lines'], 'sigmas': [0.5, 0.5, 2.0, 0.1]}
+    check = {'facets': 9, 'planes_found': 5, 'planes': [0] * 6, 'points_on_roofs': 321, 'points_within_0_25m': 0.87,
+             'median_abs_dz_m': 0.065, 'lines_at_points': 0.98}
+    results = {'program': '0123abcd', 'tables': {
+        'rendered': rendered_table([(scene, scores), ({**scene, 'failed': True}, None)]), 'lines': line_table([(scene, supports)]),
+        'halfplanes': half_plane_table([(scene, ([(1.0, 2.0), (4.0, 1.0)], 3))]), 'real': real_table([(scene, check)]),
+        'combined': [COMBINED_HEAD, ['planted', 'all', *(cell(scores) for cell in COMBINED_CELLS)]],
+    }}
+    written = results_page.page(json.loads(json.dumps(results)), '\n'.join(
+        results_page.marked(name, f'kept of {name}') for name in results_page.SECTIONS))
+    rows = [[cell.strip() for cell in line.split('|')[1:-1]] for line in written.splitlines() if line.startswith('| planted')]
+    assert rows == [
+        ['planted', '1.2', '20 %', '4321', '11 %', '22 %', '33 %', '55 of 66', '56 %', '67 %', '100 %', '0.77', '0.88'],
+        ['planted', '1.2', 'failed', *['-'] * 10],
+        ['planted', '1.2', '9', '5 of 6', '321', '87 %', '0.07', '98 %'],
+        ['planted', '6', '200', '25 %', '100', '4.4 %', '4.5', '12 %', '34 %', '1234', '33 %', '75 %', '7', '33 %'],
+        ['planted', '3', '2', '2.5', '50 %', '100 %', '50 %', '50 %'],
+        ['planted', 'all', '55', '56 %', '67 %', '99.9 %', '33 %', '4.4 %'],
+    ], rows
+    assert 'program 0123abcd' in written and all(f'kept of {name}' in written for name in results_page.SECTIONS)
+    assert results_page.page(results, written) == written, 'written again it stays'
+    print('planted scores come out of the page')
+    return 0
 
 
 if __name__ == '__main__':
