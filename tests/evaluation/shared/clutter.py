@@ -118,10 +118,10 @@ def self_test():
     random = np.random.default_rng(7)
 
     def facet():
-        stands = random.random(200) < 0.4
+        stands = random.random(200) < 0.6
         shown = np.where(stands, random.uniform(0.4, 0.7, 200), 0.0)
         agree = np.where(stands, 0.8, 0.5) * np.exp(-0.5 * ((HEIGHTS[:, None] - shown) / 0.25) ** 2)
-        return agree + random.normal(0, 0.1, agree.shape), 2000, 3
+        return agree + random.normal(0, 0.1, agree.shape), 500, 3
     facets = [facet() for _ in range(40)]
     _, *numbers = fitted(facets)
     assert all(RIGHT[support(f, *numbers).argmax()] for f in facets)
