@@ -1,15 +1,11 @@
 //! The command line as a user meets it: files out for a good scene, exit code 2 and a sentence for
 //! a bad one.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::{names_in, synthetic_files, zipped};
+use crate::common::{names_in, synthetic_files, zipped};
 
 /// What a run writes.
 const OUTPUTS: [&str; 21] = [
@@ -62,7 +58,7 @@ impl Scene {
     fn with_list(angles: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         let scene = Self::new();
         fs::remove_dir_all(scene.0.path().join("scene/colmap")).unwrap();
-        let (rendered, _) = ridgeline::synthetic::l_scene(common::SIZE_PX);
+        let (rendered, _) = ridgeline::synthetic::l_scene(crate::common::SIZE_PX);
         for (path, bytes) in ridgeline::synthetic::to_photogrammetric(&rendered) {
             scene.write(&path, &bytes);
         }
@@ -191,9 +187,12 @@ fn what_hardly_agrees_is_refused_unless_asked_for() {
         (state >> 8) % below
     };
     for name in ["s1_01", "s1_02", "s1_03", "s2_01", "s2_02", "s2_03"] {
-        let mut image = image::RgbImage::new(common::SIZE_PX, common::SIZE_PX);
+        let mut image = image::RgbImage::new(crate::common::SIZE_PX, crate::common::SIZE_PX);
         for _ in 0..400 {
-            let (x, y) = (random(common::SIZE_PX - 20), random(common::SIZE_PX - 20));
+            let (x, y) = (
+                random(crate::common::SIZE_PX - 20),
+                random(crate::common::SIZE_PX - 20),
+            );
             let (w, h, gray) = (4 + random(16), 4 + random(16), random(256) as u8);
             for (column, row) in (0..w).flat_map(|i| (0..h).map(move |j| (i, j))) {
                 image.put_pixel(x + column, y + row, image::Rgb([gray; 3]));
@@ -325,7 +324,7 @@ fn an_image_of_another_size_is_refused() {
 fn a_singular_camera_is_refused() {
     let scene = Scene::new();
     fs::remove_dir_all(scene.0.path().join("scene/colmap")).unwrap();
-    let (rendered, _) = ridgeline::synthetic::l_scene(common::SIZE_PX);
+    let (rendered, _) = ridgeline::synthetic::l_scene(crate::common::SIZE_PX);
     for (path, bytes) in ridgeline::synthetic::to_projection(&rendered) {
         scene.write(&path, &bytes);
     }
@@ -362,7 +361,7 @@ fn an_orientation_that_contradicts_the_images_is_named() {
     named(Scene::with_list(|[o, p, k]| [p, o, k]), "phi, omega, kappa");
     named(Scene::with_list(|a| a.map(|a| a / 0.9)), "kappa in gon");
     let scene = Scene::new();
-    let (mut rendered, _) = ridgeline::synthetic::l_scene(common::SIZE_PX);
+    let (mut rendered, _) = ridgeline::synthetic::l_scene(crate::common::SIZE_PX);
     for view in &mut rendered.views {
         let size = f64::from(view.camera.height);
         view.camera.k[(1, 2)] = size - view.camera.k[(1, 2)];

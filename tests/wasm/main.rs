@@ -1,10 +1,11 @@
 //! The page's session in Node: the whole pipeline on a synthetic scene finds what it finds natively
-//! (`tests/identical.mjs` compares the bytes), and bad input is refused in words.
+//! (`tests/wasm/identical.mjs` compares the bytes), and bad input is refused in words.
 //!
 //! `wasm-pack test --node --release -- --test wasm`
 #![cfg(target_arch = "wasm32")]
 #![allow(clippy::unwrap_used)]
 
+#[path = "../common/mod.rs"]
 mod common;
 
 use common::{golden, synthetic_files, zipped};
@@ -55,7 +56,7 @@ fn the_house_is_as_it_is_natively() {
             (name, bytes)
         })
         .collect();
-    let expected = golden::section_of(include_str!("golden/l.txt"), "lines");
+    let expected = golden::section_of(include_str!("../golden/l.txt"), "lines");
     let differences = golden::differences(expected, &golden::section("lines", &files));
     assert!(differences.is_empty(), "{}", differences.join("\n"));
 

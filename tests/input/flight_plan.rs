@@ -1,8 +1,4 @@
 //! The page and the command line divide a flight into the same squares, and leave out the same.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::fmt::Write as _;
 use std::io::Cursor;
@@ -143,7 +139,7 @@ fn the_size_of_photographs_does_not_change_what_is_left_out() {
 
 #[test]
 fn measured_ground_gives_the_same_tiles() {
-    let files: Vec<InputFile> = (common::synthetic_files().into_iter())
+    let files: Vec<InputFile> = (crate::common::synthetic_files().into_iter())
         .map(|(path, bytes)| InputFile::new(&path, bytes))
         .collect();
     let unknown = options(None, None);

@@ -1,7 +1,5 @@
 //! Lists of orientations as people have them: separators, encodings, names, headings, and angles of
 //! which nobody says the unit.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used)]
 
 use std::fmt::Write;
 use std::io::Cursor;

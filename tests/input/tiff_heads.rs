@@ -1,12 +1,7 @@
 //! A TIFF is planned with by its directories alone, wherever they stand, and decoded window by
 //! window, as if it had been read whole.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used)]
 
-#[path = "common/tiff.rs"]
-mod planted;
-
-use planted::{Form, Place, forms, offset_of, written};
+use crate::planted_tiff::{Form, Place, forms, offset_of, written};
 use ridgeline::orientation::{FileSource, InputFile, Needed, PhotographHead, detect};
 use ridgeline::raster::{HeaderNeeds, image_header, load_image};
 use ridgeline::scene_loader::{

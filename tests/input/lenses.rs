@@ -4,7 +4,7 @@
 //! (`tests/fixtures/make.py`); photographs are drawn here, of a pattern on flat ground, by lenses
 //! that are inverted independently.
 
-#![allow(clippy::unwrap_used, clippy::disallowed_methods)]
+#![allow(clippy::disallowed_methods)]
 
 use nalgebra::{Point2, Point3};
 use ridgeline::orientation::{FileKind, InputFile, Orientation, detect, orientation_sets};
@@ -15,7 +15,7 @@ fn micmac() -> Vec<InputFile> {
         ($($name:literal),*) => {
             vec![$(InputFile::new(
                 concat!("Ori-T/", $name),
-                include_bytes!(concat!("fixtures/cases/micmac_lens/", $name)).to_vec(),
+                include_bytes!(concat!("../fixtures/cases/micmac_lens/", $name)).to_vec(),
             )),*]
         };
     }

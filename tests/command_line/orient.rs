@@ -1,8 +1,4 @@
 //! `ridgeline orient` as a user meets it.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::ffi::OsStr;
 use std::fmt::Write as _;
@@ -10,7 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-use common::{contents_of, names_in};
+use crate::common::{contents_of, names_in};
 use nalgebra::{Point3, Vector3};
 use ridgeline::Scene;
 

@@ -1,6 +1,4 @@
 //! Orientations with the usual errors: the check names the error, and leaves correct scenes alone.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used)]
 
 use std::fmt::Write;
 

@@ -1,14 +1,10 @@
 //! The examples do what their first lines promise. `cargo test` builds them before it runs this.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use common::synthetic_files;
+use crate::common::synthetic_files;
 
 /// Runs an example and returns what it printed.
 fn run(example: &str, arguments: &[&Path]) -> String {

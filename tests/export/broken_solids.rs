@@ -1,14 +1,9 @@
 //! Every error of the independent check of solids, planted.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used)]
-
-#[path = "common/solid_checks.rs"]
-mod solid_checks;
 
 use std::fs;
 
+use crate::solid_checks::solid_errors;
 use serde_json::{Value, json};
-use solid_checks::solid_errors;
 
 /// No error.
 const NONE: [u16; 0] = [];

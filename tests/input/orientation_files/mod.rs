@@ -2,7 +2,6 @@
 //! versions write, what several chunks and blocks say, and names that lead nowhere.
 //!
 //! The files in `tests/fixtures/cases` hold the three cameras of [`truth`].
-#![cfg(not(target_arch = "wasm32"))]
 
 use std::io::Cursor;
 

@@ -219,16 +219,19 @@ fn what_nerfstudio_applied_is_undone() {
 
 #[test]
 fn a_guess_of_the_other_readers_is_named() {
-    let bundle = ("bundle.out", include_str!("../fixtures/bundler/bundle.out"));
-    let list = ("list.txt", include_str!("../fixtures/bundler/list.txt"));
-    let points = include_str!("../fixtures/bundler/principal_points.txt");
+    let bundle = (
+        "bundle.out",
+        include_str!("../../fixtures/bundler/bundle.out"),
+    );
+    let list = ("list.txt", include_str!("../../fixtures/bundler/list.txt"));
+    let points = include_str!("../../fixtures/bundler/principal_points.txt");
     let whole = read(&[bundle, list, ("principal_points.txt", points)]).unwrap();
     assert_eq!(whole.warnings, [""; 0]);
     let less: Vec<&str> = points.lines().filter(|l| !l.starts_with("s1_02")).collect();
     let less = read(&[bundle, list, ("principal_points.txt", &less.join("\n"))]).unwrap();
     less.warns(&["principal_points.txt", "s1_02", "in the middle"]);
     // A photo of INPHO that names a camera is not given another one.
-    let project = ("gable.prj", include_str!("../fixtures/inpho/gable.prj"));
+    let project = ("gable.prj", include_str!("../../fixtures/inpho/gable.prj"));
     let cameras: Vec<usize> = (project.1.match_indices("$CAMERA_DEFINITION"))
         .map(|(at, _)| at)
         .collect();
@@ -246,9 +249,9 @@ fn a_guess_of_the_other_readers_is_named() {
 fn of_calibrations_of_the_same_name_the_one_beside_is_taken() {
     let pose = (
         "Ori-A/Orientation-s1_02.png.xml",
-        include_str!("../fixtures/micmac/Orientation-s1_02.png.xml"),
+        include_str!("../../fixtures/micmac/Orientation-s1_02.png.xml"),
     );
-    let lens = include_str!("../fixtures/micmac/AutoCal_s1_02.png.xml");
+    let lens = include_str!("../../fixtures/micmac/AutoCal_s1_02.png.xml");
     let (_, other) = replaced(("", lens), "<F>15294", "<F>20000");
     let beside = ("Ori-A/AutoCal_s1_02.png.xml", lens);
     let elsewhere = ("Ori-B/AutoCal_s1_02.png.xml", &*other);

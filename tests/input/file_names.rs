@@ -3,8 +3,6 @@
 //! All are the gable house of `ridgeline::synthetic` at 48 x 48 pixels under other names; whatever
 //! lies beside it, each photograph must get its own camera.
 
-#![allow(clippy::unwrap_used)]
-
 use std::io::Cursor;
 
 use image::{DynamicImage, ImageFormat};

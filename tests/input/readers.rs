@@ -16,7 +16,7 @@ use ridgeline::synthetic::gable_scene;
 
 macro_rules! fixtures {
     ($($path:literal),* $(,)?) => {
-        vec![$(InputFile::new($path, include_bytes!(concat!("fixtures/", $path)).to_vec())),*]
+        vec![$(InputFile::new($path, include_bytes!(concat!("../fixtures/", $path)).to_vec())),*]
     };
 }
 

@@ -1,13 +1,10 @@
 //! Point clouds as evidence for roofs: what photographs do not show is found; clouds that are moved
 //! or of another place are named.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used, clippy::disallowed_methods)]
-
-mod common;
+#![allow(clippy::disallowed_methods)]
 
 use std::sync::Arc;
 
-use common::clouds::{is_inside, las, plan, points};
+use crate::common::clouds::{is_inside, las, plan, points};
 use nalgebra::{Point2, Point3, Vector2};
 use ridgeline::dense::{CloudComparison, CloudVerdict};
 use ridgeline::ids::ProposalOrigin;

@@ -98,7 +98,7 @@ fn nerfstudio_states_angles_of_the_whole_image() {
 
 #[test]
 fn the_origin_of_a_list_of_k_r_c_is_added() {
-    let list = include_str!("../fixtures/krc/cameras.json");
+    let list = include_str!("../../fixtures/krc/cameras.json");
     let path = "cameras.json";
     let moved = list.replacen('{', "{\"origin\": [432000.0, 5412000.0, 100.0],", 1);
     let [plain, moved] = [list, &moved].map(|text| read(&[(path, text)]).unwrap().orientations);
@@ -111,7 +111,7 @@ fn the_origin_of_a_list_of_k_r_c_is_added() {
 
 #[test]
 fn inpho_counts_pixels_from_the_point_that_it_names() {
-    let project = include_str!("../fixtures/inpho/gable.prj");
+    let project = include_str!("../../fixtures/inpho/gable.prj");
     let of = |reference: &str| {
         let stated = "$PIXEL_REFERENCE : CenterTopLeft";
         let text = project.replace(stated, &format!("$PIXEL_REFERENCE : {reference}"));

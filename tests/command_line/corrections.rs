@@ -1,9 +1,5 @@
 //! Corrections by hand on the command line: applied, kept in projects, and named where they are
 //! wrong.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +7,7 @@ use std::process::{Command, Output};
 
 use serde_json::{Value, json};
 
-use common::{names_in, synthetic_files};
+use crate::common::{names_in, synthetic_files};
 
 /// Height to which the ground below the house is set, metres.
 const GROUND_Z: f64 = -1.25;
@@ -51,7 +47,7 @@ impl Place {
 
 /// The ground of the house is elsewhere; a facet is confirmed 50 m above all roofs.
 fn corrections() -> Value {
-    let (_, truth) = ridgeline::synthetic::l_scene(common::SIZE_PX);
+    let (_, truth) = ridgeline::synthetic::l_scene(crate::common::SIZE_PX);
     let (plane, ring) = &truth.facets[0];
     let middle = ridgeline::geometry::mean_point(ring);
     let [x, y, z]: [f64; 3] = middle.into();

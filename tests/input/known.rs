@@ -1,7 +1,6 @@
 //! Terrain and footprints that are known beforehand: planted ones are followed, wrong ones lose
 //! against the images and are named.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used, clippy::disallowed_methods)]
+#![allow(clippy::disallowed_methods)]
 
 use nalgebra::{Point2, Point3, Vector3};
 use ridgeline::facets::{FootprintVerdict, RegisterTrace, RegisterVerdict};

@@ -2,7 +2,7 @@
 # Sees to a Chromium for the page's tests: the one that CHROMIUM names, the system's, Debian's package
 # when run as root there, or else the browser that Playwright downloads.
 set -euo pipefail
-cd "$(dirname "$0")/../www"
+cd "$(dirname "$0")/.."
 
 # Ubuntu calls itself a Debian too, but has no such package: Playwright's browser serves there.
 debian_has_it() {

@@ -1,11 +1,5 @@
 //! A large area on many machines: `plan`, `tile` and `join` give what one process gives, whatever
 //! is killed on the way, and refuse by name what does not belong together.
-#![cfg(not(target_arch = "wasm32"))]
-#![allow(clippy::unwrap_used)]
-
-mod common;
-#[path = "common/tiff.rs"]
-mod tiff;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -37,7 +31,7 @@ struct Block(tempfile::TempDir);
 impl Block {
     /// A plan without parts.
     fn planned() -> Self {
-        Self::planned_of(common::synthetic_files())
+        Self::planned_of(crate::common::synthetic_files())
     }
 
     fn planned_of(files: Vec<(String, Vec<u8>)>) -> Self {
@@ -210,7 +204,7 @@ fn a_plan_says_what_each_tile_reads() {
     let views = house["views"].as_array().unwrap();
     assert!(views.len() >= 3 && house["memory_mb"].as_u64().unwrap() > 20);
     let (width, name) = (&views[0]["window"][2], &views[0]["view"]);
-    assert!((64..=u64::from(common::SIZE_PX)).contains(&width.as_u64().unwrap()));
+    assert!((64..=u64::from(crate::common::SIZE_PX)).contains(&width.as_u64().unwrap()));
     let inputs = plan["inputs"].as_array().unwrap();
     let path = format!("images/{}", name.as_str().unwrap());
     assert!(inputs.iter().any(|input| input["file"] == path), "{path}");
@@ -430,7 +424,7 @@ fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
     for (name, bytes) in &others {
         fs::write(images.join(name), bytes).unwrap();
     }
-    let archive = common::zipped(&common::synthetic_files());
+    let archive = crate::common::zipped(&crate::common::synthetic_files());
     fs::write(block.0.path().join("scene.zip"), archive).unwrap();
     let model_of = |scene: &str, out: &str| {
         let mut command = block.command();
@@ -446,11 +440,11 @@ fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
 
 /// The scene with its photographs as TIFFs, whose directories stand in every place in turn.
 fn tiff_files() -> Vec<(String, Vec<u8>)> {
-    let mut forms = tiff::forms().into_iter().cycle();
+    let mut forms = crate::planted_tiff::forms().into_iter().cycle();
     let mut as_tiff = |(path, bytes): (String, Vec<u8>)| match image::load_from_memory(&bytes) {
         Ok(image) => {
             let form = forms.next().unwrap();
-            let bytes = tiff::written(&image.into_rgb8(), form);
+            let bytes = crate::planted_tiff::written(&image.into_rgb8(), form);
             (path.replace(".png", ".tif"), bytes)
         }
         Err(_) => {
@@ -458,7 +452,7 @@ fn tiff_files() -> Vec<(String, Vec<u8>)> {
             (path, text.replace(".png", ".tif").into_bytes())
         }
     };
-    common::synthetic_files()
+    crate::common::synthetic_files()
         .into_iter()
         .map(&mut as_tiff)
         .collect()
@@ -512,7 +506,7 @@ fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
             others += 1;
             // Its directory says where it stands.
             let mut moved = bytes.clone();
-            moved[tiff::directory_of(&bytes) + 30] ^= 1;
+            moved[crate::planted_tiff::directory_of(&bytes) + 30] ^= 1;
             fs::write(&path, moved).unwrap();
             let named = format!("{name}: the file has changed since the plan was made");
             block.is_refused(&make(), &[&named]);
@@ -521,7 +515,7 @@ fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
     }
     assert!(others > 2 && refused > 0, "{others} {refused}");
     // The files of an archive are read whole, to the same results.
-    let archive = common::zipped(&tiff_files());
+    let archive = crate::common::zipped(&tiff_files());
     fs::write(block.0.path().join("scene.zip"), archive).unwrap();
     let model_of = |scene: &str, out: &str| {
         let mut command = block.command();
