@@ -1,5 +1,5 @@
 #!/bin/bash
-# The tiles of a plan as a SLURM array: sbatch --array=1-N --mem=MB cluster/slurm.sh PLAN
+# The tiles of a plan as a SLURM array: sbatch --array=1-N --mem=MB examples/cluster/slurm.sh PLAN
 # (N and MB as `ridgeline plan` prints them), then: ridgeline join PLAN --out DIR.
 # Submitted again it makes what is missing; whole parts are kept.
 #SBATCH --job-name=ridgeline
