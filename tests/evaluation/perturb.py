@@ -27,7 +27,7 @@ from PIL import Image
 
 import score_table
 from shared import results_page
-from shared.on_scenes import MEASURES, ROOT, names_of, parser_of
+from shared.on_scenes import MEASURES, ROOT, is_random, is_rendered, names_of, parser_of
 
 # What is done to the images: standard deviation of the noise (of 255), largest change of exposure and gamma,
 # are they turned by quarters, quality of the JPEG, is its colour halved in size (4:2:0).
@@ -63,8 +63,8 @@ def main():
     if not args.scenes.is_dir() or not scorer.is_dir():
         print(f'perturb: skipped, there is no {args.scenes} with a {scorer} beside it')
         return 0
-    scenes = [args.scenes / name for name in names_of(args)]
-    jobs = [job for scene in scenes if (scene / 'truth').is_dir() for job in jobs_of(scene)]
+    scenes = [scene for name in names_of(args) if not is_random(scene := args.scenes / name)]
+    jobs = [job for scene in scenes if is_rendered(scene) for job in jobs_of(scene)]
     jobs += [job for scene in scenes if (scene / 'check').is_dir() for job in real_jobs_of(scene)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         scores = list(pool.map(functools.partial(scored, args.binary.resolve(), scorer), jobs))

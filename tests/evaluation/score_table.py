@@ -19,7 +19,7 @@ import zlib
 import numpy as np
 
 from shared import against_truth, results_page
-from shared.on_scenes import ROOT, parser_of
+from shared.on_scenes import ROOT, is_random, is_rendered, parser_of
 
 # Scenes that are reconstructed without one view, and the places of these views.
 LEFT_OUT = {'detached': (0, 3), 'suburb': (0, 3)}
@@ -51,19 +51,18 @@ def main():
     if args.only:
         names = [name for name in names if name in args.only.split(',')]
     runs = [run(args.binary.resolve(), args.scenes / name) for name in names]
-    rectangle_runs = [run(args.binary.resolve(), args.scenes / name, 'rectangles') for name in names
-                      if (args.scenes / name / 'truth').is_dir()]
-    combined = [run(args.binary.resolve(), args.scenes / name, 'combined') for name in names
-                if (args.scenes / name / 'truth').is_dir()]
+    # Of random scenes the page has one row each.
+    named = [r for r in runs if not is_random(r['scene'])]
+    rendered = [r for r in named if is_rendered(r['scene'])]
+    others = [[run(args.binary.resolve(), r['scene'], method) for r in rendered] for method in ('rectangles', 'combined')]
     left_out = [(place, [run(args.binary.resolve(), r['scene'], method, all_but(r, place)) for method in ('lines', 'combined')])
-                for r in runs for place in LEFT_OUT.get(r['scene'].name, ()) if not r['failed']]
+                for r in rendered for place in LEFT_OUT.get(r['scene'].name, ()) if not r['failed']]
     results = {'program': results_page.program_here(), 'tables': {
-        'lines': line_table([(r, lines(scorer, r)) for r in runs]),
-        'rendered': rendered_table([(r, score(scorer, r)) for r in runs if (r['scene'] / 'truth').is_dir()]),
-        'combined': combined_table(scorer, [('', of_scene(r, rectangle_runs, combined)) for r in runs
-                                              if (r['scene'] / 'truth').is_dir()] + left_out),
-        'halfplanes': half_plane_table([(r, against_truth.angles(scorer, r['scene'], r['out'])) for r in runs
-                                        if (r['scene'] / 'truth').is_dir() and not r['failed']]),
+        'lines': line_table([(r, lines(scorer, r)) for r in named]),
+        'rendered': rendered_table([(r, score(scorer, r)) for r in runs if is_rendered(r['scene'])]),
+        'combined': combined_table(scorer, [('', [r, *by_others]) for r, *by_others in zip(rendered, *others)] + left_out),
+        'halfplanes': half_plane_table([(r, against_truth.angles(scorer, r['scene'], r['out'])) for r in rendered
+                                        if not r['failed']]),
         'real': real_table([(r, check(scorer, r)) for r in runs if (r['scene'] / 'check').is_dir()]),
     }}
     for rows in results['tables'].values():
@@ -74,7 +73,7 @@ def main():
         results_page.RESULTS.write_text(results_page.page(results, results_page.RESULTS.read_text()))
         print(f'{results_page.RESULTS.relative_to(ROOT)} written')
     more = [r for _, pair in left_out for r in pair]
-    return 1 if any(r['failed'] for r in runs + rectangle_runs + combined + more) else 0
+    return 1 if any(r['failed'] for r in sum(others, runs + more)) else 0
 
 
 def run(binary, scene, method='lines', views=()):
@@ -121,18 +120,14 @@ def all_but(run, place):
     return names[:place] + names[place + 1:]
 
 
-def of_scene(run, *others):
-    """A scene's run by method "lines", and those by the others; None where there is none."""
-    return [run] + [next((o for o in runs if o['scene'] == run['scene']), None) for runs in others]
-
-
 def lines(scorer, run):
     """What became of the segments (B99 3.3 and 3.4), with the scores of the lines, matched and all, where there is truth."""
     if run['failed']:
         return None
     of_report, out = report(run), run['out']
-    counts = {name: count for stage in of_report['stages'][:3] for name, count in stage['counts'].items()}
-    truth = (run['scene'] / 'truth').is_dir()
+    counts = {name: count for stage in of_report['stages']
+              if stage['stage'] in ('segments', 'matches', 'lines') for name, count in stage['counts'].items()}
+    truth = is_rendered(run['scene'])
     found = json.loads((out / 'lines.json').read_text())['lines']
     matched = [line for line in found if line['origin'] == 'matched']
     (out / 'matched.json').write_text(json.dumps({'lines': matched}))

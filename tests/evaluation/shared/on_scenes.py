@@ -37,6 +37,16 @@ def names_of(args):
     return [name for name in names if is_wanted(args, name)]
 
 
+def is_rendered(scene):
+    """Is there an exact truth? That of real scenes is digitised."""
+    return (scene / 'truth').is_dir() and not (scene / 'check').is_dir()
+
+
+def is_random(scene):
+    """Is it named by a seed?"""
+    return scene.name[0] == 'r' and scene.name[1:].isdigit()
+
+
 def loaded(scorer):
     """score.py, by its path, as a module."""
     spec = importlib.util.spec_from_file_location('score', scorer)
