@@ -13,7 +13,7 @@
 #   make jury       all scenes many times over, changed a little each time; rewrites its tables there
 #   make judge      SEEDS (as "518 to 530") of random scenes that chose nothing; BEFORE=PROGRAM compares in pairs, PAGE=1
 #                   rewrites the section of docs/results.md
-#   make calibrate  fits the tables of src/evidence to scenes with truth, PYTHON (python3) with numpy, scipy, shapely, Pillow
+#   make calibrate  fits the tables of src/base/evidence to scenes with truth, PYTHON (python3) with numpy, scipy, shapely, Pillow
 #   make bench      time and memory of every stage, against the commit BEFORE in pairs, beside other programs, and
 #                   how they grow; SCENE (SCENES/suburb), ROUNDS (5), FLIGHT; rewrites docs/bench.md
 #   make clean      remove what was built (not the tool cache)
@@ -39,7 +39,7 @@ WWW_SOURCES := $(shell find www -type f -not -name '*.tsbuildinfo' -not -path 'w
 	-not -path 'www/dist/*' -not -path 'www/src/pkg*' -not -path 'www/public/entrance/*' -not -path 'www/test*' -not -path 'www/tools/*' -not -path 'www/screenshots/*' \
 	-not -path 'www/playwright-report/*')
 PACKAGE := www/src/pkg/ridgeline_bg.wasm
-# The page's second module: the same crate without the rooms above src/structure_from_motion.
+# The page's second module: the same crate without the rooms above src/orienting/structure_from_motion.
 ORIENTATION := www/src/pkg-orient/orientation_bg.wasm
 ENTRANCE := www/public/entrance/model.glb
 SITE := www/dist/index.html

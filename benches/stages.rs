@@ -8,13 +8,13 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use ridgeline::execution::progress::silent;
-use ridgeline::orientation::InputFile;
-use ridgeline::params::Params;
+use ridgeline::base::execution::progress::silent;
+use ridgeline::base::params::Params;
+use ridgeline::orienting::orientation::InputFile;
+use ridgeline::orienting::scene::Scene;
+use ridgeline::orienting::scene_loader::{LoadOptions, load_scene};
+use ridgeline::orienting::synthetic::l_scene;
 use ridgeline::pipeline::{Run, Stage};
-use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{LoadOptions, load_scene};
-use ridgeline::synthetic::l_scene;
 
 fn stages(c: &mut Criterion) {
     let (scene, _) = l_scene(320);

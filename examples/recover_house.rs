@@ -2,7 +2,7 @@
 //! how far off the model is: `cargo run --release --example recover_house`.
 #![allow(clippy::print_stdout, clippy::print_stderr, clippy::disallowed_methods)]
 
-use ridgeline::synthetic::gable_scene;
+use ridgeline::orienting::synthetic::gable_scene;
 use ridgeline::{Params, Run};
 
 /// Side of the photographs, pixels.
@@ -21,7 +21,7 @@ fn main() {
     );
     for (plane, corners) in &truth.facets {
         // The facet whose plane runs closest to the drawn corners.
-        let farthest = |facet: &&ridgeline::model::Facet| {
+        let farthest = |facet: &&ridgeline::roofs::model::Facet| {
             let distances = corners.iter().map(|c| facet.plane.signed_distance(c).abs());
             distances.fold(0.0, f64::max)
         };

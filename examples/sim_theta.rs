@@ -3,7 +3,7 @@
 //! `cargo run --release --example sim_theta`.
 #![allow(clippy::print_stdout, clippy::print_stderr, clippy::disallowed_methods)]
 
-use ridgeline::synthetic::gable_scene;
+use ridgeline::orienting::synthetic::gable_scene;
 use ridgeline::{Params, Run, Stage, silent};
 
 /// Side of the photographs, pixels.

@@ -12,7 +12,7 @@ use std::io;
 use std::path::Path;
 
 use nalgebra::Point3;
-use ridgeline::synthetic::{gable_scene, to_files};
+use ridgeline::orienting::synthetic::{gable_scene, to_files};
 
 fn main() -> io::Result<()> {
     let Some(folder) = std::env::args_os().nth(1) else {

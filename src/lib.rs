@@ -3,7 +3,7 @@
 //! Three or more calibrated aerial photographs in, textured 3D roof models out.
 //!
 //! ```
-//! use ridgeline::synthetic::{gable_scene, to_files};
+//! use ridgeline::orienting::synthetic::{gable_scene, to_files};
 //! use ridgeline::{InputFile, LoadOptions, Params, Run, load_scene};
 //!
 //! // Photographs of a drawn house with their orientation, as files in memory.
@@ -25,7 +25,7 @@
 //! A stage is run by itself with [`Run::step`]; its result and its trace stand in [`Results`]:
 //!
 //! ```
-//! use ridgeline::synthetic::gable_scene;
+//! use ridgeline::orienting::synthetic::gable_scene;
 //! use ridgeline::{Params, Run, Stage, silent};
 //!
 //! let mut run = Run::new(gable_scene(320).0, Params::default());
@@ -39,27 +39,19 @@
 //! 3D-structures in multiple aerial images using lines and regions").
 //!
 //! ```text
-//! images + orientation files (or structure_from_motion, where there are none)
-//!    -> orientation, camera, scene_loader   Scene { views, ground }; known: terrain, footprints
-//!    -> lines2d                  edgels, chains, segments (per view)          B99 3.2
-//!    -> linematch                pairs, triples, tracks over N views          B99 3.1 - 3.4
-//!    -> lines3d                  3D lines with covariance                     B99 3.2, figure 4
-//!    -> adjustment               single views adjusted to these, and matched again
-//!    -> terrain                  the ground
-//!    -> coplanar                 sets of coplanar lines and their polygons     B99 2, 5
-//!    -> adjacency                corners with edges and regions; their planes  B99 2
-//!    -> planes                   Sim(theta), half-planes, plane hypotheses    B99 4.1, 4.2
-//!    -> dense                    planes from dense matching                   B99 2
-//!    -> facets                   borders, labelling, verification             B99 4.3
-//!    or, from the images to the roofs in one go
-//!    -> objectspace              regions, directions, clusters, rectangles    W96 3.3 - 3.6
-//!    or both for one model: lines and planes of objectspace compete with the others
-//!    -> buildings, solids        refined wireframes, walls, closed solids
-//!    -> corrections              what somebody corrects by hand
-//!    -> walls                    where they stand below overhanging eaves
-//!    -> texture                  best view per face, atlas
-//!    -> export                   CityJSON, glTF, OBJ, lines
+//! base          numbers, geometry, parameters, evidence in nats
+//! photographs   pixels and cameras
+//! orienting     files into a Scene { views, known }; photographs alone into their orientation
+//! lines         lines2d -> linematch -> lines3d -> adjustment              B99 3
+//! planes        terrain; half_planes -> grouping -> hypotheses             B99 4.1, 4.2
+//!               dense, coplanar, adjacency                                 B99 2
+//!               objectspace: regions, directions, clusters, rectangles     W96 3.3 - 3.6
+//! roofs         facets -> buildings, solids -> corrections -> walls        B99 4.3, 2
+//! results       texture -> export, roof_report, figures
+//! pipeline      the order of the stages;  tiles: large areas in pieces
 //! ```
+//!
+//! A group calls the groups above it in this list, never those below.
 //!
 //! Each stage is one function from typed input to `(value, trace)`; the trace holds what a figure
 //! of it shows, and why each hypothesis was rejected. [`pipeline`] alone orders the stages.
@@ -72,58 +64,22 @@
 // Of the page's second module most is dead, and left out when it is linked.
 #![cfg_attr(not(feature = "reconstruction"), allow(dead_code, unused_imports))]
 
-pub mod adjacency;
-mod adjustment;
-pub mod agreement;
-pub mod buildings;
-pub mod camera;
-pub mod coplanar;
-pub mod corrections;
-pub mod dense;
-mod error;
-pub mod evidence;
-pub mod execution;
-pub mod export;
-pub mod facets;
-pub mod figures;
-pub mod geometry;
-pub mod ids;
-mod json;
-pub mod known;
-mod labelling;
-pub mod linematch;
-pub mod lines2d;
-pub mod lines3d;
-mod math;
-pub mod model;
-pub mod objectspace;
-pub mod orientation;
-pub mod orientation_check;
-pub mod params;
-mod photoconsistency;
+pub mod base;
+pub mod lines;
+pub mod orienting;
+pub mod photographs;
 pub mod pipeline;
-mod plan_index;
 pub mod planes;
-pub mod raster;
-pub mod roof_report;
-pub mod scene;
-pub mod scene_loader;
-pub mod solids;
-pub mod structure_from_motion;
-pub mod synthetic;
-pub mod terrain;
-#[cfg(test)]
-mod testing;
-pub mod texture;
+pub mod results;
+pub mod roofs;
 pub mod tiles;
-pub mod walls;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
 
-pub use crate::error::{Error, Result};
-pub use crate::execution::progress::{Listener, silent};
-pub use crate::orientation::InputFile;
-pub use crate::params::{Method, Params};
+pub use crate::base::error::{Error, Result};
+pub use crate::base::execution::progress::{Listener, silent};
+pub use crate::base::params::{Method, Params};
+pub use crate::orienting::orientation::InputFile;
+pub use crate::orienting::scene::{Scene, View};
+pub use crate::orienting::scene_loader::{LoadOptions, inspect_files, load_scene};
 pub use crate::pipeline::{Results, Run, Stage, StageSummary};
-pub use crate::scene::{Scene, View};
-pub use crate::scene_loader::{LoadOptions, inspect_files, load_scene};

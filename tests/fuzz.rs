@@ -17,13 +17,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use image::{DynamicImage, ImageFormat};
-use ridgeline::known::{Register, Terrain, WorldSystem};
-use ridgeline::orientation::InputFile;
-use ridgeline::orientation::{detect, orientation_sets};
-use ridgeline::raster::{image_header, load_image, load_window};
-use ridgeline::scene_loader::{
+use ridgeline::orienting::known::{Register, Terrain, WorldSystem};
+use ridgeline::orienting::orientation::InputFile;
+use ridgeline::orienting::orientation::{detect, orientation_sets};
+use ridgeline::orienting::scene_loader::{
     LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
 };
+use ridgeline::photographs::raster::{image_header, load_image, load_window};
 
 /// Longest time that one input may take: machines may be busy, but nothing hangs.
 const SLOWEST: Duration = Duration::from_secs(60);

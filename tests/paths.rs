@@ -56,13 +56,13 @@ fn what_documents_and_comments_name_exists() {
 fn a_path_that_leads_nowhere_is_named_with_its_line() {
     let known = [
         "src",
-        "src/math.rs",
+        "src/base/math.rs",
         "docs",
         "docs/rooms/planes.md",
         "docs/rooms/src/b.rs",
     ];
     let exists = |path: &str| known.contains(&path);
-    let document = "See `src/math.rs` and\n[planes](planes.md#sweep), [out](https://a.b/src/c.rs), [gone](../gone.md).\n\
+    let document = "See `src/base/math.rs` and\n[planes](planes.md#sweep), [out](https://a.b/src/c.rs), [gone](../gone.md).\n\
                     Not `www/src/gone.ts`, `src/NAME.rs`, `src/gone/*.rs`, `src/b.rs` nor (docs/)";
     let expected = [
         "docs/rooms/a.md:2: docs/gone.md",

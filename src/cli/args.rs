@@ -239,7 +239,7 @@ pub(super) enum MethodArgument {
     Adjacency,
 }
 
-impl From<MethodArgument> for ridgeline::params::Method {
+impl From<MethodArgument> for ridgeline::base::params::Method {
     fn from(method: MethodArgument) -> Self {
         match method {
             MethodArgument::Lines => Self::Lines,
@@ -265,7 +265,7 @@ fn parse_positive(text: &str) -> Result<f64, String> {
 }
 
 fn parse_crs(text: &str) -> Result<u32, String> {
-    ridgeline::orientation::epsg_of(text)
+    ridgeline::orienting::orientation::epsg_of(text)
         .ok_or_else(|| format!("'{text}' is not a number of EPSG, as EPSG:25832"))
 }
 

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use ridgeline::execution::progress::silent;
+use ridgeline::base::execution::progress::silent;
 use ridgeline::tiles::{BlockPlan, BlockSource};
 
 use super::args::{InputArgs, JoinArgs, PlanArgs, TileArgs};

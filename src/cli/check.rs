@@ -4,11 +4,11 @@ use std::path::Path;
 
 use nalgebra::Matrix3;
 use ridgeline::Error;
-use ridgeline::agreement::{AgreementReport, Finding};
-use ridgeline::execution::progress::silent;
-use ridgeline::orientation::FileSource;
+use ridgeline::base::agreement::{AgreementReport, Finding};
+use ridgeline::base::execution::progress::silent;
+use ridgeline::orienting::orientation::FileSource;
+use ridgeline::orienting::scene_loader::PlannedScene;
 use ridgeline::pipeline::{Run, Stage};
-use ridgeline::scene_loader::PlannedScene;
 use serde_json::{Value, json};
 
 use super::args::CheckArgs;

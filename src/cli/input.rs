@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ridgeline::orientation::InputFile;
-use ridgeline::params::{Correction, Params, corrections_from_json};
-use ridgeline::scene_loader::{LoadOptions, Project, open_project};
+use ridgeline::base::params::{Correction, Params, corrections_from_json};
+use ridgeline::orienting::orientation::InputFile;
+use ridgeline::orienting::scene_loader::{LoadOptions, Project, open_project};
 
 use super::args::InputArgs;
 use super::failure::Failure;
@@ -143,7 +143,8 @@ fn add_orientation(files: &mut Vec<InputFile>, folder: &Path) -> Result<String, 
         "{}/",
         folder.file_name().unwrap_or_default().to_string_lossy()
     );
-    let is_image = |file: &InputFile| ridgeline::raster::image_format(&file.bytes).is_some();
+    let is_image =
+        |file: &InputFile| ridgeline::photographs::raster::image_format(&file.bytes).is_some();
     let orientations = beside.files.into_iter().filter(|file| !is_image(file));
     files.extend(orientations.map(|file| {
         let path = format!("{name}{}", file.path);

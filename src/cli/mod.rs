@@ -33,7 +33,7 @@ mod walk;
 use std::process::ExitCode;
 
 use clap::Parser;
-use ridgeline::params::Params;
+use ridgeline::base::params::Params;
 
 use self::args::{Cli, Command};
 use self::failure::Failure;

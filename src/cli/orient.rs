@@ -4,9 +4,9 @@ use std::fs;
 use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use ridgeline::execution::progress::{Listener, with_listener};
-use ridgeline::orientation::{FileSource, InputFile, Needed};
-use ridgeline::structure_from_motion::{
+use ridgeline::base::execution::progress::{Listener, with_listener};
+use ridgeline::orienting::orientation::{FileSource, InputFile, Needed};
+use ridgeline::orienting::structure_from_motion::{
     FeatureOptions, GroundControl, OrientOptions, orient as orient_photos,
 };
 

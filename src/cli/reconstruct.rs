@@ -5,14 +5,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use ridgeline::agreement::Finding;
-use ridgeline::execution::progress::Listener;
-use ridgeline::orientation::{FileSource, Needed};
-use ridgeline::pipeline::{Run, Stage, counted};
-use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{
+use ridgeline::base::agreement::Finding;
+use ridgeline::base::execution::progress::Listener;
+use ridgeline::orienting::orientation::{FileSource, Needed};
+use ridgeline::orienting::scene::Scene;
+use ridgeline::orienting::scene_loader::{
     MOST_VIEWS, PlannedScene, Project, files_of_ground, files_of_settling, inspect_files, settled,
 };
+use ridgeline::pipeline::{Run, Stage, counted};
 use ridgeline::tiles::{Area, CELL_M, refuse_corrections};
 
 use super::args::ReconstructArgs;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use ridgeline::export::report_files;
+use ridgeline::results::export::report_files;
 
 use super::args::ReportArgs;
 use super::failure::Failure;

@@ -7,8 +7,8 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use ridgeline::orientation::{FileSource, InputFile, Needed, PhotographHead};
-use ridgeline::raster::HeaderNeeds;
+use ridgeline::orienting::orientation::{FileSource, InputFile, Needed, PhotographHead};
+use ridgeline::photographs::raster::HeaderNeeds;
 use ridgeline::tiles::InputStamp;
 
 /// Files in memory, and where photographs lie of which only the head is there.

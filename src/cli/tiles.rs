@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use ridgeline::execution::progress::silent;
+use ridgeline::base::execution::progress::silent;
 use ridgeline::tiles::Area;
 
 use super::failure::Failure;

@@ -6,7 +6,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use ridgeline::scene_loader::unpack;
+use ridgeline::orienting::scene_loader::unpack;
 
 use super::failure::Failure;
 use super::scene_files::SceneFiles;
@@ -263,7 +263,7 @@ fn kind_of(path: &str) -> String {
 mod tests {
     use std::os::unix::fs::symlink;
 
-    use ridgeline::orientation::InputFile;
+    use ridgeline::orienting::orientation::InputFile;
 
     use super::*;
 

@@ -1,8 +1,8 @@
 //! The cameras of a run: as its scene states them, and as the adjustment moves them.
 
 use super::{Run, Stage};
-use crate::adjustment::shifts_back;
-use crate::scene::ViewShift;
+use crate::lines::adjustment::shifts_back;
+use crate::orienting::scene::ViewShift;
 
 impl Run {
     /// Puts the cameras where the run begins: as stated, with the shifts of single views taken

@@ -1,9 +1,9 @@
 //! What new parameters leave of the results.
 
 use super::{Run, Stage};
-use crate::execution::progress::silent;
-use crate::params::{Method, Params};
-use crate::synthetic::l_scene;
+use crate::base::execution::progress::silent;
+use crate::base::params::{Method, Params};
+use crate::orienting::synthetic::l_scene;
 
 /// A stage that reads a parameter and does not say so keeps a result of the old value.
 #[test]

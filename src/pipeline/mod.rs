@@ -28,7 +28,7 @@ mod sharding;
 mod stages;
 mod summary;
 
-pub use crate::adjustment::AdjustmentRound;
+pub use crate::lines::adjustment::AdjustmentRound;
 pub use sharding::PackedView;
 pub use stages::{Outcome, Results, Stage};
 pub use summary::{StageSummary, counted};
@@ -37,20 +37,20 @@ use std::borrow::Cow;
 
 use serde_json::Value;
 
-use crate::camera::Camera;
-use crate::evidence::{Candidates, Evidence, JudgedLine};
-use crate::execution::{Listener, progress};
-use crate::execution::{MergedShards, Sharded, run_merged};
-use crate::export;
-use crate::export::export_all;
-use crate::lines2d::ImageSegment;
-use crate::lines3d::{Line3d, LineOutcome};
-use crate::model::{BuildingWalls, RoofModel};
-use crate::objectspace::{image_segments, world_lines};
-use crate::params::{Method, Params};
-use crate::planes::HalfPlane;
-use crate::scene::Scene;
-use crate::texture::TexturedModel;
+use crate::base::evidence::{Candidates, Evidence, JudgedLine};
+use crate::base::execution::{Listener, progress};
+use crate::base::execution::{MergedShards, Sharded, run_merged};
+use crate::base::params::{Method, Params};
+use crate::lines::lines2d::ImageSegment;
+use crate::lines::lines3d::{Line3d, LineOutcome};
+use crate::orienting::scene::Scene;
+use crate::photographs::camera::Camera;
+use crate::planes::half_planes::HalfPlane;
+use crate::planes::objectspace::{image_segments, world_lines};
+use crate::results::export;
+use crate::results::export::export_all;
+use crate::results::texture::TexturedModel;
+use crate::roofs::model::{BuildingWalls, RoofModel};
 
 impl Results {
     /// The roof model of whichever method ran; of both, that to which both came. With what was

@@ -4,7 +4,7 @@
 use std::fmt::Debug;
 
 use super::Stage;
-use crate::params::Method;
+use crate::base::params::Method;
 
 const PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/www/src/shared/stages.ts");
 

@@ -4,10 +4,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::{PackedView, Run, Stage};
-use crate::execution::progress;
-use crate::model::RoofModel;
-use crate::params::{Method, Params};
-use crate::scene::Scene;
+use crate::base::execution::progress;
+use crate::base::params::{Method, Params};
+use crate::orienting::scene::Scene;
+use crate::roofs::model::RoofModel;
 
 /// Photographs are reduced until all views together have no more pixels. A first look then takes
 /// 1.2 to 1.8 s of one core in wasm with four or five buildings, and 3 s with fifteen: 1 s a
@@ -90,7 +90,7 @@ fn preliminary_params(params: &Params) -> Params {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::l_scene;
+    use crate::orienting::synthetic::l_scene;
 
     #[test]
     fn photographs_are_reduced_to_the_work_of_a_second_or_two() {

@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::stages::Stage;
 use super::summary::StageSummary;
-use crate::dense::CloudComparison;
-use crate::facets::RegisterTrace;
-use crate::params::Params;
-use crate::scene::{Scene, ViewAdjustment, ViewShift};
-use crate::terrain::TerrainComparison;
+use crate::base::params::Params;
+use crate::orienting::scene::{Scene, ViewAdjustment, ViewShift};
+use crate::planes::dense::CloudComparison;
+use crate::planes::terrain::TerrainComparison;
+use crate::roofs::facets::RegisterTrace;
 
 /// The content of `report.json`.
 #[derive(Serialize)]

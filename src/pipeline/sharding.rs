@@ -1,18 +1,18 @@
 //! What passes between the instances that divide a run between them: views of the scene, results of
-//! earlier stages, and the shards of a stage's maps. See [`crate::execution::shard`] for the order
+//! earlier stages, and the shards of a stage's maps. See [`crate::base::execution::shard`] for the order
 //! of things.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::{Run, Stage};
-use crate::camera::Camera;
-use crate::execution::{Listener, progress};
-use crate::execution::{MergedShards, Origin, ShardTask, run_shard};
-use crate::known::Known;
-use crate::params::Params;
-use crate::raster::Gray;
-use crate::scene::{Scene, Survey, View};
+use crate::base::execution::{Listener, progress};
+use crate::base::execution::{MergedShards, Origin, ShardTask, run_shard};
+use crate::base::params::Params;
+use crate::orienting::known::Known;
+use crate::orienting::scene::{Scene, Survey, View};
+use crate::photographs::camera::Camera;
+use crate::photographs::raster::Gray;
 
 /// A view with what every instance must know of its scene.
 #[derive(Debug, Serialize, Deserialize)]

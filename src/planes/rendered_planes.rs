@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
-use crate::camera::Camera;
-use crate::geometry::{Plane, rotation_from_axis_angle};
-use crate::raster::Gray;
-use crate::scene::{Scene, View};
+use crate::base::geometry::{Plane, rotation_from_axis_angle};
+use crate::orienting::scene::{Scene, View};
+use crate::photographs::camera::Camera;
+use crate::photographs::raster::Gray;
 
 /// A plane and the part of it (in plan) that exists.
 pub(crate) struct TexturedPlane {
@@ -78,9 +78,9 @@ fn of_cameras(cameras: impl IntoIterator<Item = Camera>, surfaces: &[TexturedPla
         origin: Vector3::zeros(),
         ground_z: None,
         region: None,
-        known: crate::known::Known::default(),
+        known: crate::orienting::known::Known::default(),
         warnings: Vec::new(),
-        survey: crate::scene::Survey::default(),
+        survey: crate::orienting::scene::Survey::default(),
     }
 }
 

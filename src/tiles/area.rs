@@ -14,20 +14,20 @@ use super::join::{CellPart, Joined, join};
 use super::model_parts::{subset, walls_of};
 use super::tile::{Cell, Tile};
 use super::vacancy::{self, ASKED_AFTER};
-use crate::error::{Error, Result};
-use crate::execution::Listener;
-use crate::ids::ViewId;
-use crate::model::RoofModel;
-use crate::objectspace::{image_segments, world_lines};
-use crate::orientation::{FileSource, InputFile};
-use crate::params::{Method, Params};
-use crate::pipeline::{Run, Stage, counted};
-use crate::scene::{Scene, View};
-use crate::scene_loader::{
+use crate::base::error::{Error, Result};
+use crate::base::execution::Listener;
+use crate::base::ids::ViewId;
+use crate::base::params::{Method, Params};
+use crate::orienting::orientation::{FileSource, InputFile};
+use crate::orienting::scene::{Scene, View};
+use crate::orienting::scene_loader::{
     LoadOptions, PlannedScene, ShownArea, files_of_settling, settled, whole_views,
 };
-use crate::texture::texture_model;
-use crate::walls::place_walls_of;
+use crate::pipeline::{Run, Stage, counted};
+use crate::planes::objectspace::{image_segments, world_lines};
+use crate::results::texture::texture_model;
+use crate::roofs::model::RoofModel;
+use crate::roofs::walls::place_walls_of;
 
 /// An area, its tiles, and what those that are done have found.
 #[derive(Clone, Debug)]

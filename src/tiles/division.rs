@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::tile::{Tile, plan_tiles};
-use crate::error::{Error, Result};
-use crate::orientation::InputFile;
-use crate::scene_loader::{Flight, FlightOverview, LoadOptions, ShownArea, ViewWindow};
+use crate::base::error::{Error, Result};
+use crate::orienting::orientation::InputFile;
+use crate::orienting::scene_loader::{Flight, FlightOverview, LoadOptions, ShownArea, ViewWindow};
 
 /// Why a square of an area without a stated region is left out.
 pub(super) const WHY_LEFT_OUT: &str = "fewer than three photographs show its ground";

@@ -5,7 +5,7 @@ pub(super) mod candidates {
     use serde::de::Error as _;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    use crate::evidence::{Candidates, JudgedFacet, WindowCounts};
+    use crate::base::evidence::{Candidates, JudgedFacet, WindowCounts};
 
     pub(crate) fn serialize<S: Serializer>(all: &Candidates, to: S) -> Result<S::Ok, S::Error> {
         let windows: Vec<&WindowCounts> = (all.facets.iter().chain(&all.rectangles))
@@ -34,7 +34,7 @@ pub(super) mod textured {
     use serde::de::Error as _;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    use crate::texture::{FaceTexture, TexturedModel};
+    use crate::results::texture::{FaceTexture, TexturedModel};
 
     pub(crate) fn serialize<S: Serializer>(all: &TexturedModel, to: S) -> Result<S::Ok, S::Error> {
         (all.atlas.dimensions(), all.atlas.as_raw(), &all.faces).serialize(to)

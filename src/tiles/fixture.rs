@@ -2,10 +2,10 @@
 
 use nalgebra::{Point3, Vector3};
 
-use crate::geometry::Plane;
-use crate::ids::BuildingId;
-use crate::model::{Facet, RoofModel};
-use crate::solids::close_buildings;
+use crate::base::geometry::Plane;
+use crate::base::ids::BuildingId;
+use crate::roofs::model::{Facet, RoofModel};
+use crate::roofs::solids::close_buildings;
 
 /// A house of 8 x 8 m with a mono-pitch roof, its middle at a place.
 pub(crate) fn house([x, y]: [f64; 2]) -> RoofModel {

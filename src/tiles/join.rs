@@ -13,20 +13,20 @@ use super::atlases::AtlasPlaces;
 use super::fields;
 use super::model_parts::{append, middle, moved, moved_plane, walls_of};
 use super::tile::Cell;
-use crate::evidence::Candidates;
-use crate::export::{
+use crate::base::evidence::Candidates;
+use crate::base::geometry::Segment2;
+use crate::base::ids::{HalfPlaneId, LineId, ViewId};
+use crate::base::params::TextureParams;
+use crate::lines::lines2d::ImageSegment;
+use crate::lines::lines3d::Line3d;
+use crate::orienting::scene::Scene;
+use crate::photographs::raster::reduced_colours;
+use crate::planes::half_planes::HalfPlane;
+use crate::results::export::{
     ExportInput, SquareContent, TILESET_FILE, atlas_jpeg, export_all, glb_of, tileset_of_squares,
 };
-use crate::geometry::Segment2;
-use crate::ids::{HalfPlaneId, LineId, ViewId};
-use crate::lines2d::ImageSegment;
-use crate::lines3d::Line3d;
-use crate::model::{Building, BuildingWalls, RoofModel, Surface};
-use crate::params::TextureParams;
-use crate::planes::HalfPlane;
-use crate::raster::reduced_colours;
-use crate::scene::Scene;
-use crate::texture::{FaceTexture, TexturedModel};
+use crate::results::texture::{FaceTexture, TexturedModel};
+use crate::roofs::model::{Building, BuildingWalls, RoofModel, Surface};
 
 /// Two buildings that share more of the smaller one's footprint are the same building, found in two
 /// cells.
@@ -423,9 +423,9 @@ fn join_buildings(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::check_invariants;
-    use crate::scene::Survey;
-    use crate::texture::FaceTexture;
+    use crate::orienting::scene::Survey;
+    use crate::results::texture::FaceTexture;
+    use crate::roofs::model::check_invariants;
     use crate::tiles::fixture::house;
 
     fn part(cell: Cell, origin: [f64; 3], houses: &[[f64; 2]]) -> CellPart {
@@ -484,7 +484,7 @@ mod tests {
             origin: Vector3::zeros(),
             ground_z: None,
             region: None,
-            known: crate::known::Known::default(),
+            known: crate::orienting::known::Known::default(),
             warnings: Vec::new(),
             survey: Survey::default(),
         };

@@ -7,11 +7,11 @@ use super::area::{Area, TileReport, work_off};
 use super::join::join;
 use super::part_file::{PartKey, TileOutcome};
 use super::tile::Cell;
-use crate::error::{Error, Result};
-use crate::execution::Listener;
-use crate::export::{atlas_jpeg, glb};
-use crate::orientation::InputFile;
-use crate::scene_loader::LoadOptions;
+use crate::base::error::{Error, Result};
+use crate::base::execution::Listener;
+use crate::orienting::orientation::InputFile;
+use crate::orienting::scene_loader::LoadOptions;
+use crate::results::export::{atlas_jpeg, glb};
 
 impl Area {
     /// The options with which the cells of a tile are loaded; `None` where there is no such tile.
@@ -80,8 +80,8 @@ impl Area {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::execution::progress::silent;
-    use crate::synthetic::{gable_scene, to_files};
+    use crate::base::execution::progress::silent;
+    use crate::orienting::synthetic::{gable_scene, to_files};
 
     fn files() -> Vec<InputFile> {
         let (scene, _) = gable_scene(48);
@@ -103,7 +103,7 @@ mod tests {
             &mut files,
             &options,
             None,
-            &crate::params::Params::default(),
+            &crate::base::params::Params::default(),
             60.0,
         )
         .unwrap()

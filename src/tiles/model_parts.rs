@@ -2,9 +2,9 @@
 
 use nalgebra::{Point2, Vector3};
 
-use crate::geometry::Plane;
-use crate::ids::{BuildingId, FacetId};
-use crate::model::{Building, BuildingWalls, RoofModel, Solid, Surface};
+use crate::base::geometry::Plane;
+use crate::base::ids::{BuildingId, FacetId};
+use crate::roofs::model::{Building, BuildingWalls, RoofModel, Solid, Surface};
 
 /// The middle of a building's box in plan.
 pub(super) fn middle(building: &Building) -> Point2<f64> {

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::area::TileReport;
 use super::join::CellPart;
-use crate::error::{Error, Result};
+use crate::base::error::{Error, Result};
 
 const MAGIC: &[u8; 15] = b"ridgeline part\n";
 

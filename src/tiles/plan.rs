@@ -20,13 +20,15 @@ use super::division::Division;
 use super::join::Joined;
 use super::part_file::{PartKey, TileOutcome};
 use super::tile::{Cell, Tile};
-use crate::error::{Error, Result};
-use crate::execution::Listener;
-use crate::export::city_json_seq;
-use crate::orientation::{BLOCK_BYTES, FileSource, InputFile, Needed};
-use crate::params::Params;
-use crate::raster::image_format;
-use crate::scene_loader::{LoadOptions, ViewWindow, files_of_ground, region_windows, whole_views};
+use crate::base::error::{Error, Result};
+use crate::base::execution::Listener;
+use crate::base::params::Params;
+use crate::orienting::orientation::{BLOCK_BYTES, FileSource, InputFile, Needed};
+use crate::orienting::scene_loader::{
+    LoadOptions, ViewWindow, files_of_ground, region_windows, whole_views,
+};
+use crate::photographs::raster::image_format;
+use crate::results::export::city_json_seq;
 
 /// Cells that are planned at the same time. Assumption: enough for the cores of a machine, and few
 /// enough for its memory, since neighbours measure the ground in the same photographs.
@@ -442,12 +444,12 @@ fn planned(
         source.hold(&|files| {
             let of_cell =
                 |_: usize, cell: &Cell| files_of_ground(files, &options_of(cell, options));
-            let needed = crate::execution::map(some, of_cell);
+            let needed = crate::base::execution::map(some, of_cell);
             Needed::merged(needed.into_iter().flatten(), files)
         })?;
         let files = source.files();
         let of_cell = |_: usize, cell: &Cell| planned_cell(files, options, cell);
-        cells.extend(crate::execution::map(some, of_cell));
+        cells.extend(crate::base::execution::map(some, of_cell));
     }
     source.hold(&|_| Vec::new())?;
     let mut cells = cells.into_iter();

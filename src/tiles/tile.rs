@@ -9,9 +9,9 @@ use nalgebra::{Point2, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::model_parts::middle;
-use crate::error::{Error, Result};
-use crate::math::{larger, smaller};
-use crate::model::{Building, RoofModel};
+use crate::base::error::{Error, Result};
+use crate::base::math::{larger, smaller};
+use crate::roofs::model::{Building, RoofModel};
 
 /// Side of a cell, metres. Assumption: twice the margin; the same views then say most about all of
 /// it, and a long house reaches beyond the core by no more than the margin.
@@ -150,7 +150,7 @@ mod tests {
             .map(|b| middle(b).x - 1000.0)
             .collect();
         assert_eq!(middles, [20.0, 62.0]);
-        assert_eq!(crate::model::check_invariants(&kept), []);
+        assert_eq!(crate::roofs::model::check_invariants(&kept), []);
     }
 
     #[test]

@@ -17,14 +17,14 @@
 use nalgebra::Point2;
 
 use super::tile::{Cell, SLACK_M};
-use crate::dense::highest_surface;
-use crate::geometry::Segment3;
-use crate::lines3d::Line3d;
-use crate::math::{larger, smaller};
-use crate::params::{Method, RoofParams};
+use crate::base::geometry::Segment3;
+use crate::base::math::{larger, smaller};
+use crate::base::params::{Method, RoofParams};
+use crate::lines::lines3d::Line3d;
+use crate::orienting::scene::Scene;
 use crate::pipeline::{Run, Stage};
-use crate::scene::Scene;
-use crate::terrain::Ground;
+use crate::planes::dense::highest_surface;
+use crate::planes::terrain::Ground;
 
 /// The stage after which it is asked: the first one that knows the ground.
 pub(super) const ASKED_AFTER: Stage = Stage::HalfPlanes;
@@ -93,14 +93,14 @@ fn meets(part: [Point2<f64>; 2], low: Point2<f64>, high: Point2<f64>, by: f64) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::execution::progress::silent;
-    use crate::geometry::Plane;
-    use crate::orientation::InputFile;
-    use crate::params::Params;
+    use crate::base::execution::progress::silent;
+    use crate::base::geometry::Plane;
+    use crate::base::params::Params;
+    use crate::orienting::orientation::InputFile;
+    use crate::orienting::scene_loader::LoadOptions;
+    use crate::orienting::synthetic::{gable_scene, shed_scene, to_files};
     use crate::planes::rendered_planes::{RIDGE_Z, level_ground, scene, slope_from, textured};
-    use crate::scene_loader::LoadOptions;
-    use crate::synthetic::{gable_scene, shed_scene, to_files};
-    use crate::testing::line;
+    use crate::roofs::testing::line;
     use crate::tiles::Area;
     use nalgebra::{Point3, Vector3};
 

@@ -2,8 +2,8 @@
 
 use js_sys::{Float32Array, Float64Array};
 
-use crate::geometry::Segment2;
-use crate::lines3d::Line3d;
+use crate::base::geometry::Segment2;
+use crate::lines::lines3d::Line3d;
 
 /// (x0, y0, x1, y1) per segment, pixels.
 pub(super) fn segment_array<'a>(segments: impl Iterator<Item = &'a Segment2>) -> Float32Array {

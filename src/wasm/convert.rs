@@ -9,9 +9,9 @@ use serde::de::DeserializeOwned;
 use wasm_bindgen::{JsError, JsValue};
 
 use super::memory::grow_ahead;
-use crate::camera::Camera;
-use crate::error::Error;
-use crate::execution::{Listener, MergedShards};
+use crate::base::error::Error;
+use crate::base::execution::{Listener, MergedShards};
+use crate::photographs::camera::Camera;
 
 /// A JavaScript `Error` with the refusal's message, called "InputError": the page shows it as
 /// advice, and anything else as a fault of the program. Its `code` is the kind of refusal, its
@@ -50,7 +50,7 @@ pub(crate) fn from_js<T: DeserializeOwned>(value: &JsValue, what: &str) -> Resul
     } else {
         String::from(js_sys::JSON::stringify(value)?)
     };
-    crate::json::read(&text).map_err(|e| named_error("InputError", &format!("{what}: {e}")))
+    crate::base::json::read(&text).map_err(|e| named_error("InputError", &format!("{what}: {e}")))
 }
 
 /// A view of the scene; its centre in metres, local frame, and its 3 x 4 matrix from there to

@@ -1,4 +1,4 @@
-//! What the page's live figures ask of a project: traces, and [`crate::figures`] where the reader
+//! What the page's live figures ask of a project: traces, and [`crate::results::figures`] where the reader
 //! points.
 
 use std::borrow::Cow;
@@ -11,19 +11,19 @@ use super::arrays::end_points_px;
 use super::convert::{named_error, to_js};
 
 use super::session::Session;
-use crate::buildings::{BuildingRefinement, RoofGap, UnrefinedFacets};
-use crate::evidence::Evidence;
-use crate::figures::{correspondence, detected_stretches, segment_matching, warped_views};
-use crate::ids::SegmentId;
-use crate::ids::ViewId;
-use crate::linematch::{MatchTrace, SegmentRef, StepCount};
-use crate::lines2d::{ImageSegment, SegmentRejection};
-use crate::lines3d::Side;
-use crate::lines3d::SupportKind;
-use crate::lines3d::{Line3d, LineContradiction, LineOrigin};
-use crate::objectspace::{image_segments, world_lines};
+use crate::base::evidence::Evidence;
+use crate::base::ids::SegmentId;
+use crate::base::ids::ViewId;
+use crate::lines::linematch::{MatchTrace, SegmentRef, StepCount};
+use crate::lines::lines2d::{ImageSegment, SegmentRejection};
+use crate::lines::lines3d::Side;
+use crate::lines::lines3d::SupportKind;
+use crate::lines::lines3d::{Line3d, LineContradiction, LineOrigin};
 use crate::pipeline::Run;
-use crate::planes::{PointsOfInterest, SweepRejection};
+use crate::planes::half_planes::{PointsOfInterest, SweepRejection};
+use crate::planes::objectspace::{image_segments, world_lines};
+use crate::results::figures::{correspondence, detected_stretches, segment_matching, warped_views};
+use crate::roofs::buildings::{BuildingRefinement, RoofGap, UnrefinedFacets};
 
 /// A 3D line without its geometry, which `lines` gives.
 #[derive(Serialize, tsify::Tsify)]

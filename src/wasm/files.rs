@@ -7,9 +7,9 @@ use wasm_bindgen::prelude::*;
 
 use super::convert::{named_error, to_js};
 use super::session::{Session, load_options};
-use crate::orientation::{InputFile, Needed, PhotographHead};
-use crate::raster::HeaderNeeds;
-use crate::scene_loader::{files_of_ground, files_of_views};
+use crate::orienting::orientation::{InputFile, Needed, PhotographHead};
+use crate::orienting::scene_loader::{files_of_ground, files_of_views};
+use crate::photographs::raster::HeaderNeeds;
 
 #[wasm_bindgen]
 impl Session {

@@ -2,7 +2,7 @@
 //!
 //! Several workers have an `Orienter` each: photographs are dealt to them (`readPhoto`), what was
 //! read is given to all (`takePhoto`), the maps over pairs are done in shards
-//! ([`crate::execution::shard`]), and one of them registers the block.
+//! ([`crate::base::execution::shard`]), and one of them registers the block.
 
 use js_sys::{Float32Array, Function, Uint8Array};
 use nalgebra::{Matrix3, Point2};
@@ -12,13 +12,13 @@ use wasm_bindgen::prelude::*;
 use super::convert::{
     ViewInfo, foreign, from_js, input_error, listener_of, merge_all, named_error, to_js,
 };
-use crate::camera::Camera;
-use crate::execution::{MergedShards, with_listener};
-use crate::orientation::InputFile;
-use crate::structure_from_motion::{
+use crate::base::execution::{MergedShards, with_listener};
+use crate::orienting::orientation::InputFile;
+use crate::orienting::structure_from_motion::{
     CameraReport, ControlResidual, FeatureOptions, GroundControl, Intrinsics, OrientChain,
     OrientOptions, OrientReport, Oriented, PairSummary, PhotoReport, Pose, ReadPhoto, Snapshot,
 };
+use crate::photographs::camera::Camera;
 
 /// Photographs on their way to an orientation.
 #[wasm_bindgen]

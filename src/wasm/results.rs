@@ -9,12 +9,12 @@ use super::arrays::{end_points_px, line_array, segment_array};
 use super::convert::{named_error, to_js};
 use super::figures::{Picture, lines_of, segments_of};
 use super::session::{Session, not_loaded};
-use crate::adjacency::{AdjacencyTrace, CornerPlane};
-use crate::coplanar::{CoplanarSet, CoplanarTrace};
-use crate::dense::{DensePlane, DenseTrace};
-use crate::lines3d::SupportKind;
-use crate::objectspace::{Window, WindowTrace};
-use crate::texture::texture_ground;
+use crate::lines::lines3d::SupportKind;
+use crate::planes::adjacency::{AdjacencyTrace, CornerPlane};
+use crate::planes::coplanar::{CoplanarSet, CoplanarTrace};
+use crate::planes::dense::{DensePlane, DenseTrace};
+use crate::planes::objectspace::{Window, WindowTrace};
+use crate::results::texture::texture_ground;
 
 /// What `directions` returns.
 #[derive(Serialize, tsify::Tsify)]

@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
 use super::convert::{ViewInfo, from_js, input_error, listener_of, named_error, to_js};
-use crate::execution::MergedShards;
-use crate::orientation::{InputFile, PhotographHead};
-use crate::params::Params;
-use crate::pipeline::{PackedView, Run, Stage};
-use crate::planes::PointsOfInterest;
-use crate::scene_loader::{
+use crate::base::execution::MergedShards;
+use crate::base::params::Params;
+use crate::orienting::orientation::{InputFile, PhotographHead};
+use crate::orienting::scene_loader::{
     LoadOptions, Project, SHOWN, inspect_files, load_scene, open_project, unpack,
 };
+use crate::pipeline::{PackedView, Run, Stage};
+use crate::planes::half_planes::PointsOfInterest;
 use crate::tiles::Area;
 
 /// Files, parameters and the reconstruction made of them.
@@ -109,7 +109,7 @@ struct SceneInfo {
     views: Vec<ViewInfo>,
     origin: [f64; 3],
     warnings: Vec<String>,
-    agreement: Option<crate::agreement::AgreementReport>,
+    agreement: Option<crate::base::agreement::AgreementReport>,
     known: KnownFiles,
 }
 

@@ -1,12 +1,12 @@
 //! One run over several workers: each has a session with the same scene, and does its shard of a
-//! stage's maps ([`crate::execution::shard`]). The page carries the bytes between them.
+//! stage's maps ([`crate::base::execution::shard`]). The page carries the bytes between them.
 
 use js_sys::{Function, Uint8Array};
 use wasm_bindgen::prelude::*;
 
 use super::convert::{foreign, listener_of, merge_all, named_error, to_js};
 use super::session::{Session, stage_of};
-use crate::execution::MergedShards;
+use crate::base::execution::MergedShards;
 use crate::pipeline::{PackedView, Run};
 
 #[wasm_bindgen]

@@ -5,9 +5,9 @@ use wasm_bindgen::prelude::*;
 
 use super::convert::{from_js, input_error, listener_of, named_error, to_js};
 use super::session::{Session, load_options};
-use crate::execution::MergedShards;
-use crate::orientation::{InputFile, Needed};
-use crate::scene_loader::{
+use crate::base::execution::MergedShards;
+use crate::orienting::orientation::{InputFile, Needed};
+use crate::orienting::scene_loader::{
     LoadOptions, files_of_ground, files_of_views, ground_files, ground_heights,
 };
 use crate::tiles::{Area, FlightPlan, TileReport};

@@ -47,9 +47,9 @@ impl Place {
 
 /// The ground of the house is elsewhere; a facet is confirmed 50 m above all roofs.
 fn corrections() -> Value {
-    let (_, truth) = ridgeline::synthetic::l_scene(crate::common::SIZE_PX);
+    let (_, truth) = ridgeline::orienting::synthetic::l_scene(crate::common::SIZE_PX);
     let (plane, ring) = &truth.facets[0];
-    let middle = ridgeline::geometry::mean_point(ring);
+    let middle = ridgeline::base::geometry::mean_point(ring);
     let [x, y, z]: [f64; 3] = middle.into();
     let normal: [f64; 3] = plane.normal.into();
     json!([

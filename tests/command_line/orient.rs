@@ -19,8 +19,8 @@ struct Photographs {
 impl Photographs {
     fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let (scene, _) = ridgeline::synthetic::drone_scene(240);
-        for (path, bytes) in ridgeline::synthetic::to_files(&scene) {
+        let (scene, _) = ridgeline::orienting::synthetic::drone_scene(240);
+        for (path, bytes) in ridgeline::orienting::synthetic::to_files(&scene) {
             if path.ends_with(".png") {
                 let path = folder.path().join("photos").join(path);
                 fs::create_dir_all(path.parent().unwrap()).unwrap();

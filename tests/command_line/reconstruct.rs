@@ -58,8 +58,8 @@ impl Scene {
     fn with_list(angles: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         let scene = Self::new();
         fs::remove_dir_all(scene.0.path().join("scene/colmap")).unwrap();
-        let (rendered, _) = ridgeline::synthetic::l_scene(crate::common::SIZE_PX);
-        for (path, bytes) in ridgeline::synthetic::to_photogrammetric(&rendered) {
+        let (rendered, _) = ridgeline::orienting::synthetic::l_scene(crate::common::SIZE_PX);
+        for (path, bytes) in ridgeline::orienting::synthetic::to_photogrammetric(&rendered) {
             scene.write(&path, &bytes);
         }
         let path = "photogrammetric/exterior.txt";
@@ -283,7 +283,7 @@ fn the_printed_parameters_are_accepted() {
         .unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     let params: ridgeline::Params = ridgeline::Params::from_json(&text).unwrap();
-    assert_eq!(params, ridgeline::params::Params::default());
+    assert_eq!(params, ridgeline::base::params::Params::default());
 }
 
 #[test]
@@ -324,8 +324,8 @@ fn an_image_of_another_size_is_refused() {
 fn a_singular_camera_is_refused() {
     let scene = Scene::new();
     fs::remove_dir_all(scene.0.path().join("scene/colmap")).unwrap();
-    let (rendered, _) = ridgeline::synthetic::l_scene(crate::common::SIZE_PX);
-    for (path, bytes) in ridgeline::synthetic::to_projection(&rendered) {
+    let (rendered, _) = ridgeline::orienting::synthetic::l_scene(crate::common::SIZE_PX);
+    for (path, bytes) in ridgeline::orienting::synthetic::to_projection(&rendered) {
         scene.write(&path, &bytes);
     }
     scene.write("projection/s1_02.P", b"1 0 0 0\n0 1 0 0\n1 1 0 5\n");
@@ -361,12 +361,12 @@ fn an_orientation_that_contradicts_the_images_is_named() {
     named(Scene::with_list(|[o, p, k]| [p, o, k]), "phi, omega, kappa");
     named(Scene::with_list(|a| a.map(|a| a / 0.9)), "kappa in gon");
     let scene = Scene::new();
-    let (mut rendered, _) = ridgeline::synthetic::l_scene(crate::common::SIZE_PX);
+    let (mut rendered, _) = ridgeline::orienting::synthetic::l_scene(crate::common::SIZE_PX);
     for view in &mut rendered.views {
         let size = f64::from(view.camera.height);
         view.camera.k[(1, 2)] = size - view.camera.k[(1, 2)];
     }
-    for (path, bytes) in ridgeline::synthetic::to_colmap(&rendered) {
+    for (path, bytes) in ridgeline::orienting::synthetic::to_colmap(&rendered) {
         scene.write(&path, &bytes);
     }
     named(scene, "y up");

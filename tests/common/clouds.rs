@@ -6,7 +6,7 @@ use std::io::Cursor;
 use laz::laszip::LasZipCompressor;
 use laz::{LazItemRecordBuilder, LazVlr, LazVlrBuilder};
 use nalgebra::{Point2, Point3};
-use ridgeline::synthetic::SyntheticTruth;
+use ridgeline::orienting::synthetic::SyntheticTruth;
 
 /// Does a ring hold a place?
 pub fn is_inside(ring: &[Point2<f64>], p: &Point2<f64>) -> bool {
@@ -34,7 +34,7 @@ pub fn points(truth: &SyntheticTruth) -> Vec<Point3<f64>> {
     for (i, j) in (-75..75).flat_map(|i| (-75..75).map(move |j| (i, j))) {
         let x = (f64::from(i) + next()) / 3.0;
         let y = (f64::from(j) + next()) / 3.0;
-        let over = |(plane, ring): &(ridgeline::geometry::Plane, Vec<Point3<f64>>)| {
+        let over = |(plane, ring): &(ridgeline::base::geometry::Plane, Vec<Point3<f64>>)| {
             is_inside(&plan(ring), &Point2::new(x, y)).then(|| plane.z_at(x, y))
         };
         let roofs = truth.facets.iter().filter_map(over);

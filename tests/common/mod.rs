@@ -16,8 +16,8 @@ pub use scenes::SIZE_PX;
 
 /// The synthetic L-shaped house as files: path and bytes.
 pub fn synthetic_files() -> Vec<(String, Vec<u8>)> {
-    let (scene, _) = ridgeline::synthetic::l_scene(SIZE_PX);
-    ridgeline::synthetic::to_files(&scene)
+    let (scene, _) = ridgeline::orienting::synthetic::l_scene(SIZE_PX);
+    ridgeline::orienting::synthetic::to_files(&scene)
 }
 
 /// The names in a folder, in order.

@@ -1,7 +1,7 @@
 //! The synthetic scenes by the names of their goldens, each of a size that shows its houses whole.
 
-use ridgeline::scene::Scene;
-use ridgeline::synthetic::{
+use ridgeline::orienting::scene::Scene;
+use ridgeline::orienting::synthetic::{
     askew_scene, gable_scene, hip_scene, l_scene, row_scene, sheared_scene, skewed_scene,
     tower_scene,
 };

@@ -22,7 +22,7 @@ if [[ -z ${PROGRAM:-} ]]; then
 fi
 
 # The words that the readers know: comparisons of strings do not tell libFuzzer what they expect.
-grep -ohrE '"[A-Za-z_$<][A-Za-z0-9_]{1,30}"' src/orientation src/params src/scene_loader |
+grep -ohrE '"[A-Za-z_$<][A-Za-z0-9_]{1,30}"' src/orienting/orientation src/base/params src/orienting/scene_loader |
     sort -u > "$out/words"
 
 samples=("$@")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fit the tables of src/evidence to scenes of which the truth is known.
+"""Fit the tables of src/base/evidence to scenes of which the truth is known.
 
     python3 tests/evaluation/calibrate.py --binary target/release/ridgeline [--scenes NAME,...]
                                [--fit FOLDER] [--more FOLDER] [--dry] [--keep]
@@ -11,7 +11,7 @@ lines in the finished model. The folder of --fit (../shared/fit) has random scen
 their seed, that of --more (../shared/scenes) those of FITTED; beside them lies `score/` with
 score.py, by whose definitions a candidate is true. Printed are area under the ROC curve and expected calibration error of the
 present tables, which may know these scenes, and of the new ones, cross-validated by scene. Written
-are src/evidence/*.json and docs/calibration-*.svg (--dry: nothing; --keep takes runs that are there
+are src/base/evidence/*.json and docs/calibration-*.svg (--dry: nothing; --keep takes runs that are there
 already). Other lines make other facets: build and run again until the tables stay. What
 stands on roofs and how their outlines turn is fitted without a run (shared/clutter.py, shared/corners.py). Needs numpy, scipy,
 Pillow and shapely.
@@ -31,7 +31,7 @@ from shared import clutter, corners, logistic
 from shared.on_scenes import ROOT, loaded, move_to_truth
 from shared.plots import HEIGHT, LEFT, TOP, WIDTH, document
 
-TABLES = ROOT / 'src' / 'evidence'
+TABLES = ROOT / 'src' / 'base' / 'evidence'
 RUNS = ROOT / 'target' / 'calibrate'
 # Beside the random ones; looked at while the method is improved, so that they judge nothing any more.
 FITTED = ['suburb', 'detached', 'campus-drone', 'house', 'house-gable', 'real-barns', 'real-farmhouse']

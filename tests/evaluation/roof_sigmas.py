@@ -10,7 +10,7 @@ nearest true corner of that facet, within NEAR_M: another one is another place. 
 compared if either facet covers more than half of the other: the sloped area, and for every kind of
 edge that both have its length around the facet. Printed are the shares
 of errors within one and two standard deviations (68 and 95 % where they are right), and the median
-error and standard deviation. calibrate.py fits src/evidence/uncertainty.json by the same comparison.
+error and standard deviation. calibrate.py fits src/base/evidence/uncertainty.json by the same comparison.
 Needs numpy and shapely.
 """
 import argparse
@@ -24,7 +24,7 @@ from shared.on_scenes import loaded, move_to_truth
 # A corner farther away is not the same corner inexactly found, metres.
 NEAR_M = 0.5
 KINDS = ('height', 'slope', 'corner_plan', 'corner_height', 'area', 'length')
-# What the place of a side rests on, as files name it and as src/evidence/uncertainty.json does.
+# What the place of a side rests on, as files name it and as src/base/evidence/uncertainty.json does.
 SUPPORTS = {'edges': 'edges', 'fewEdges': 'few_edges', 'planes': 'planes', 'nothing': 'nothing'}
 # Kinds of edges that the truth and the report name alike.
 EDGES = ('ridge', 'hip', 'valley', 'eave', 'rake')

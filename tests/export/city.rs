@@ -133,7 +133,7 @@ fn a_known_reference_system_is_written() {
     // here.
     scene.survey.epsg = None;
     scene.origin = Vector3::zeros();
-    scene.survey.anchor = Some(ridgeline::orientation::Anchor {
+    scene.survey.anchor = Some(ridgeline::orienting::orientation::Anchor {
         lon_deg: 8.412,
         lat_deg: 49.013,
         height_m: 0.0,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
-use ridgeline::model::Surface;
+use ridgeline::roofs::model::Surface;
 use serde_json::Value;
 
 use crate::planted::{files_of, planted_models, scene};

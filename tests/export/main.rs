@@ -16,7 +16,7 @@ mod texture;
 mod tileset;
 mod walls;
 
-use ridgeline::model::RoofModel;
+use ridgeline::roofs::model::RoofModel;
 
 use planted::{files_of, planted_models, scene};
 

@@ -1,7 +1,7 @@
 //! OBJ, PLY and DXF.
 
 use nalgebra::Vector3;
-use ridgeline::model::RoofModel;
+use ridgeline::roofs::model::RoofModel;
 
 use crate::planted::{ORIGIN, files_of, planted_evidence, planted_models, scene};
 

@@ -3,24 +3,24 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
-use ridgeline::camera::Camera;
-use ridgeline::evidence::{
+use ridgeline::base::evidence::{
     Candidates, Evidence, EvidenceTerm, JudgedFacet, JudgedLine, JudgedSurface, WindowCounts,
 };
-use ridgeline::export::{ExportInput, export_all};
-use ridgeline::geometry::{Plane, Segment2, Segment3};
-use ridgeline::ids::{BuildingId, LineId, SegmentId, ViewId};
-use ridgeline::lines2d::ImageSegment;
-use ridgeline::lines3d::Line3d;
-use ridgeline::lines3d::Side;
-use ridgeline::lines3d::{LineSupport, SupportKind};
-use ridgeline::model::{BuildingWalls, Facet, RoofModel, check_invariants};
-use ridgeline::params::TextureParams;
-use ridgeline::planes::HalfPlane;
-use ridgeline::raster::Gray;
-use ridgeline::scene::{Scene, View};
-use ridgeline::solids::close_buildings;
-use ridgeline::texture::texture_model;
+use ridgeline::base::geometry::{Plane, Segment2, Segment3};
+use ridgeline::base::ids::{BuildingId, LineId, SegmentId, ViewId};
+use ridgeline::base::params::TextureParams;
+use ridgeline::lines::lines2d::ImageSegment;
+use ridgeline::lines::lines3d::Line3d;
+use ridgeline::lines::lines3d::Side;
+use ridgeline::lines::lines3d::{LineSupport, SupportKind};
+use ridgeline::orienting::scene::{Scene, View};
+use ridgeline::photographs::camera::Camera;
+use ridgeline::photographs::raster::Gray;
+use ridgeline::planes::half_planes::HalfPlane;
+use ridgeline::results::export::{ExportInput, export_all};
+use ridgeline::results::texture::texture_model;
+use ridgeline::roofs::model::{BuildingWalls, Facet, RoofModel, check_invariants};
+use ridgeline::roofs::solids::close_buildings;
 
 /// A scene origin as of a national grid.
 pub const ORIGIN: Vector3<f64> = Vector3::new(432_100.0, 5_412_300.0, 0.0);
@@ -145,9 +145,9 @@ pub fn scene() -> Scene {
         origin: ORIGIN,
         ground_z: None,
         region: None,
-        known: ridgeline::known::Known::default(),
+        known: ridgeline::orienting::known::Known::default(),
         warnings: Vec::new(),
-        survey: ridgeline::scene::Survey::default(),
+        survey: ridgeline::orienting::scene::Survey::default(),
     }
 }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
-use ridgeline::export::report_files;
-use ridgeline::model::{
+use ridgeline::results::export::report_files;
+use ridgeline::roofs::model::{
     CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
 };
 use serde_json::Value;

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
-use ridgeline::ids::LineId;
-use ridgeline::lines3d::LineContradiction;
-use ridgeline::model::Surface;
+use ridgeline::base::ids::LineId;
+use ridgeline::lines::lines3d::LineContradiction;
+use ridgeline::roofs::model::Surface;
 use serde_json::Value;
 
 use crate::planted::{ORIGIN, files_of, files_with, planted_evidence, planted_models, scene};

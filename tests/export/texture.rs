@@ -1,12 +1,12 @@
 //! Which view paints what.
 
 use nalgebra::Vector3;
-use ridgeline::ids::ViewId;
-use ridgeline::model::Surface;
-use ridgeline::params::TextureParams;
-use ridgeline::scene::{Scene, View};
-use ridgeline::solids::close_buildings;
-use ridgeline::texture::texture_model;
+use ridgeline::base::ids::ViewId;
+use ridgeline::base::params::TextureParams;
+use ridgeline::orienting::scene::{Scene, View};
+use ridgeline::results::texture::texture_model;
+use ridgeline::roofs::model::Surface;
+use ridgeline::roofs::solids::close_buildings;
 
 use crate::planted::{map_view, quad, scene};
 
@@ -82,7 +82,7 @@ fn what_a_higher_roof_hides_is_taken_from_another_view() {
     let low_roof = |views: Vec<View>| {
         let scene = Scene { views, ..scene() };
         let (_, trace) = texture_model(&scene, &model, &TextureParams::default());
-        let low = Surface::Roof(ridgeline::ids::FacetId(1));
+        let low = Surface::Roof(ridgeline::base::ids::FacetId(1));
         let is_low = |f: usize| model.buildings[0].solid.faces[f].surface == low;
         trace.faces.into_iter().find(|t| is_low(t.face)).unwrap()
     };

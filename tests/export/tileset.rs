@@ -2,10 +2,10 @@
 
 use libm::{cos, sin};
 use nalgebra::{Matrix4, Point3, Vector3};
-use ridgeline::export::{SquareContent, tileset_of_squares};
-use ridgeline::model::RoofModel;
-use ridgeline::orientation::Anchor;
-use ridgeline::scene::Scene;
+use ridgeline::orienting::orientation::Anchor;
+use ridgeline::orienting::scene::Scene;
+use ridgeline::results::export::{SquareContent, tileset_of_squares};
+use ridgeline::roofs::model::RoofModel;
 use serde_json::Value;
 
 use crate::planted::{ORIGIN, files_of, planted_models, scene};

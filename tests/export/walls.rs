@@ -2,9 +2,9 @@
 
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
-use ridgeline::geometry::{Plane, Segment3};
-use ridgeline::model::{BuildingWalls, Facet, RoofModel, Solid, Wall};
-use ridgeline::solids::{Side, close_below_overhangs, close_buildings, outline_sides};
+use ridgeline::base::geometry::{Plane, Segment3};
+use ridgeline::roofs::model::{BuildingWalls, Facet, RoofModel, Solid, Wall};
+use ridgeline::roofs::solids::{Side, close_below_overhangs, close_buildings, outline_sides};
 use serde_json::{Value, json};
 
 use crate::planted::{files_of_walled, planted_models, quad, scene};

@@ -1,16 +1,16 @@
 //! Folders as people have them: cameras in subfolders, masks, copies, names from other machines.
 //!
-//! All are the gable house of `ridgeline::synthetic` at 48 x 48 pixels under other names; whatever
+//! All are the gable house of `ridgeline::orienting::synthetic` at 48 x 48 pixels under other names; whatever
 //! lies beside it, each photograph must get its own camera.
 
 use std::io::Cursor;
 
 use image::{DynamicImage, ImageFormat};
 use nalgebra::Point3;
-use ridgeline::orientation::InputFile;
-use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{LoadOptions, inspect_files, load_scene};
-use ridgeline::synthetic::{gable_scene, to_files, to_projection};
+use ridgeline::orienting::orientation::InputFile;
+use ridgeline::orienting::scene::Scene;
+use ridgeline::orienting::scene_loader::{LoadOptions, inspect_files, load_scene};
+use ridgeline::orienting::synthetic::{gable_scene, to_files, to_projection};
 
 /// The house's files under other paths and, in the orientation, other names.
 fn renamed(path: impl Fn(&str) -> String, stated: impl Fn(&str) -> String) -> Vec<InputFile> {
@@ -54,8 +54,8 @@ fn load(files: &[InputFile]) -> Scene {
 /// Each view must have the pixels and the camera of one view of the house, which is returned.
 fn views_of_the_house(scene: &Scene) -> Vec<usize> {
     let (house, _) = gable_scene(48);
-    let original = |view: &ridgeline::scene::View| {
-        let same = |other: &ridgeline::scene::View| other.rgb == view.rgb;
+    let original = |view: &ridgeline::orienting::scene::View| {
+        let same = |other: &ridgeline::orienting::scene::View| other.rgb == view.rgb;
         let index = house
             .views
             .iter()

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::io::Cursor;
 
-use ridgeline::orientation::InputFile;
-use ridgeline::params::Params;
-use ridgeline::scene_loader::{LoadOptions, ground_heights};
+use ridgeline::base::params::Params;
+use ridgeline::orienting::orientation::InputFile;
+use ridgeline::orienting::scene_loader::{LoadOptions, ground_heights};
 use ridgeline::tiles::{Area, BlockPlan, BlockSource, FlightPlan};
 
 /// Photographs of 100 x 100 m from 100 m above level ground, every 20 m along an L: 300 m to the

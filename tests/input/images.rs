@@ -6,8 +6,8 @@ use std::io::Cursor;
 use std::path::Path;
 
 use image::{DynamicImage, ImageFormat};
-use ridgeline::orientation::{FileKind, InputFile, detect};
-use ridgeline::scene_loader::{LoadOptions, inspect_files, load_scene};
+use ridgeline::orienting::orientation::{FileKind, InputFile, detect};
+use ridgeline::orienting::scene_loader::{LoadOptions, inspect_files, load_scene};
 
 fn fixture(path: &str) -> Vec<u8> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");

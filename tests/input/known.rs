@@ -3,15 +3,15 @@
 #![allow(clippy::disallowed_methods)]
 
 use nalgebra::{Point2, Point3, Vector3};
-use ridgeline::facets::{FootprintVerdict, RegisterTrace, RegisterVerdict};
-use ridgeline::known::{Register, Terrain, WorldSystem};
-use ridgeline::orientation::InputFile;
-use ridgeline::params::Params;
+use ridgeline::base::params::Params;
+use ridgeline::orienting::known::{Register, Terrain, WorldSystem};
+use ridgeline::orienting::orientation::InputFile;
+use ridgeline::orienting::scene::Scene;
+use ridgeline::orienting::scene_loader::{LoadOptions, load_scene};
+use ridgeline::orienting::synthetic::{SyntheticTruth, gable_scene, slope_scene, to_files};
 use ridgeline::pipeline::{Run, Stage};
-use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{LoadOptions, load_scene};
-use ridgeline::synthetic::{SyntheticTruth, gable_scene, slope_scene, to_files};
-use ridgeline::terrain::{TerrainComparison, TerrainVerdict};
+use ridgeline::planes::terrain::{TerrainComparison, TerrainVerdict};
+use ridgeline::roofs::facets::{FootprintVerdict, RegisterTrace, RegisterVerdict};
 
 const SIZE_PX: u32 = 400;
 /// Tangent of 15 degrees.

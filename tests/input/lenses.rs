@@ -7,8 +7,10 @@
 #![allow(clippy::disallowed_methods)]
 
 use nalgebra::{Point2, Point3};
-use ridgeline::orientation::{FileKind, InputFile, Orientation, detect, orientation_sets};
-use ridgeline::scene_loader::{LoadOptions, load_scene};
+use ridgeline::orienting::orientation::{
+    FileKind, InputFile, Orientation, detect, orientation_sets,
+};
+use ridgeline::orienting::scene_loader::{LoadOptions, load_scene};
 
 fn micmac() -> Vec<InputFile> {
     macro_rules! files {

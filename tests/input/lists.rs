@@ -6,11 +6,11 @@ use std::io::Cursor;
 
 use image::{ImageFormat, Rgb, RgbImage};
 use nalgebra::{Matrix3, Point3, Vector3};
-use ridgeline::orientation::{
+use ridgeline::orienting::orientation::{
     InputFile, Orientation, detect, orientation_sets, rotation_from_omega_phi_kappa,
     rotation_from_yaw_pitch_roll,
 };
-use ridgeline::scene_loader::{LoadOptions, inspect_files, load_scene};
+use ridgeline::orienting::scene_loader::{LoadOptions, inspect_files, load_scene};
 
 const CAMERA: &str = "principal_distance_mm 4\npixel_size_mm 0.01\nimage_size_px 16 12\n";
 

@@ -3,16 +3,16 @@
 use std::fmt::Write;
 
 use nalgebra::{Matrix3, Vector3};
-use ridgeline::agreement::Finding;
-use ridgeline::execution::progress::silent;
-use ridgeline::orientation::InputFile;
-use ridgeline::params::Params;
-use ridgeline::pipeline::{Run, Stage};
-use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{LoadOptions, load_scene};
-use ridgeline::synthetic::{
+use ridgeline::base::agreement::Finding;
+use ridgeline::base::execution::progress::silent;
+use ridgeline::base::params::Params;
+use ridgeline::orienting::orientation::InputFile;
+use ridgeline::orienting::scene::Scene;
+use ridgeline::orienting::scene_loader::{LoadOptions, load_scene};
+use ridgeline::orienting::synthetic::{
     gable_scene, l_scene, to_colmap, to_files, to_photogrammetric, to_projection,
 };
+use ridgeline::pipeline::{Run, Stage};
 
 type Files = Vec<(String, Vec<u8>)>;
 
@@ -81,7 +81,7 @@ fn colmap(scene: &Scene, change: impl Fn(&mut Scene)) -> Files {
 type Broken = (&'static str, Files, &'static str);
 
 fn broken(scene: &Scene) -> Vec<Broken> {
-    let each = |change: &dyn Fn(&mut ridgeline::camera::Camera)| {
+    let each = |change: &dyn Fn(&mut ridgeline::photographs::camera::Camera)| {
         colmap(scene, |s| {
             s.views.iter_mut().for_each(|v| change(&mut v.camera));
         })
@@ -416,7 +416,10 @@ fn a_shifted_view_is_measured_and_shifted_back() {
 }
 
 /// A small error of a view, in words, and the camera with it.
-type SmallError = (&'static str, fn(&mut ridgeline::camera::Camera));
+type SmallError = (
+    &'static str,
+    fn(&mut ridgeline::photographs::camera::Camera),
+);
 
 /// A turn of 0.005 degrees about the camera's own x axis (1.4 px), a move of 0.1 m, a shift of 1.5
 /// px: what images of 320 pixels allow.

@@ -6,15 +6,15 @@ use std::sync::Arc;
 
 use crate::common::clouds::{is_inside, las, plan, points};
 use nalgebra::{Point2, Point3, Vector2};
-use ridgeline::dense::{CloudComparison, CloudVerdict};
-use ridgeline::ids::ProposalOrigin;
-use ridgeline::known::PointCloud;
-use ridgeline::orientation::InputFile;
-use ridgeline::params::Params;
+use ridgeline::base::ids::ProposalOrigin;
+use ridgeline::base::params::Params;
+use ridgeline::orienting::known::PointCloud;
+use ridgeline::orienting::orientation::InputFile;
+use ridgeline::orienting::scene::Scene;
+use ridgeline::orienting::scene_loader::{LoadOptions, load_scene};
+use ridgeline::orienting::synthetic::{SyntheticTruth, gable_scene, to_files};
 use ridgeline::pipeline::{Run, Stage};
-use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{LoadOptions, load_scene};
-use ridgeline::synthetic::{SyntheticTruth, gable_scene, to_files};
+use ridgeline::planes::dense::{CloudComparison, CloudVerdict};
 
 const SIZE_PX: u32 = 400;
 
@@ -134,7 +134,7 @@ fn a_slope_that_no_photograph_shows_is_found_by_the_cloud() {
     let shares = [0, 1].map(|facet| found(&with, &truth, facet));
     assert!(shares.iter().all(|share| *share > 0.85), "{shares:?}");
     let model = with.results().roof_model().unwrap();
-    let of_cloud = |f: &&ridgeline::model::Facet| {
+    let of_cloud = |f: &&ridgeline::roofs::model::Facet| {
         (f.proposals.iter()).any(|p| matches!(p, ProposalOrigin::CloudPlane(_)))
     };
     assert!(model.facets.iter().any(|f| of_cloud(&f)));
@@ -338,6 +338,6 @@ fn shares_of_all_and_nothing_and_no_error_at_all_give_numbers() {
     run.step(Stage::Facets, &ridgeline::silent());
     assert!((0.0..=1.0).contains(&comparison(&run).belongs));
     let model = run.results().roof_model().unwrap();
-    let is_number = |f: &ridgeline::model::Facet| f.probability.is_finite();
+    let is_number = |f: &ridgeline::roofs::model::Facet| f.probability.is_finite();
     assert!(model.facets.iter().all(is_number));
 }

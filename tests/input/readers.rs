@@ -1,6 +1,6 @@
 //! The readers against the small files in `tests/fixtures`, and against damaged ones.
 //!
-//! The fixtures are the gable house of `ridgeline::synthetic` at 48 x 48 pixels in every
+//! The fixtures are the gable house of `ridgeline::orienting::synthetic` at 48 x 48 pixels in every
 //! orientation format (`tests/fixtures/make.py` writes most of them); the photogrammetric list is
 //! in map coordinates. All must put the truth at the same pixels.
 
@@ -9,10 +9,10 @@
 use nalgebra::{Vector2, Vector3};
 use proptest::prelude::*;
 use ridgeline::Error;
-use ridgeline::orientation::InputFile;
-use ridgeline::orientation::{FileKind, orientation_sets};
-use ridgeline::scene_loader::{LoadOptions, inspect_files, load_scene};
-use ridgeline::synthetic::gable_scene;
+use ridgeline::orienting::orientation::InputFile;
+use ridgeline::orienting::orientation::{FileKind, orientation_sets};
+use ridgeline::orienting::scene_loader::{LoadOptions, inspect_files, load_scene};
+use ridgeline::orienting::synthetic::gable_scene;
 
 macro_rules! fixtures {
     ($($path:literal),* $(,)?) => {

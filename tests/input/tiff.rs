@@ -7,8 +7,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ridgeline::orientation::{FileKind, InputFile, detect};
-use ridgeline::raster::{Bands, Photograph, decoding_bytes, image_header, load_image, load_window};
+use ridgeline::orienting::orientation::{FileKind, InputFile, detect};
+use ridgeline::photographs::raster::{
+    Bands, Photograph, decoding_bytes, image_header, load_image, load_window,
+};
 
 /// Largest and mean difference that JPEG may make.
 const MOST_OF_JPEG: [f64; 2] = [20.0, 4.0];

@@ -2,12 +2,12 @@
 //! window, as if it had been read whole.
 
 use crate::planted_tiff::{Form, Place, forms, offset_of, written};
-use ridgeline::orientation::{FileSource, InputFile, Needed, PhotographHead, detect};
-use ridgeline::raster::{HeaderNeeds, image_header, load_image};
-use ridgeline::scene_loader::{
+use ridgeline::orienting::orientation::{FileSource, InputFile, Needed, PhotographHead, detect};
+use ridgeline::orienting::scene_loader::{
     LoadOptions, PlannedScene, files_of_ground, files_of_views, load_scene,
 };
-use ridgeline::synthetic::{gable_scene, to_files};
+use ridgeline::orienting::synthetic::{gable_scene, to_files};
+use ridgeline::photographs::raster::{HeaderNeeds, image_header, load_image};
 
 const SIZE: [u32; 2] = [700, 500];
 

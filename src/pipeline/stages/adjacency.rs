@@ -2,10 +2,10 @@
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{is_any, required, to_bytes, untraced, warn_if};
-use crate::adjacency::{AdjacencyTrace, CornerPlane, corner_planes};
-use crate::execution::Sharded;
-use crate::params::{Method, Params};
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::{Method, Params};
+use crate::orienting::scene::Scene;
+use crate::planes::adjacency::{AdjacencyTrace, CornerPlane, corner_planes};
 
 /// Planes of corners, verified or not; the graphs and the corners are in the trace.
 pub(super) type Found = Outcome<Vec<CornerPlane>, AdjacencyTrace>;

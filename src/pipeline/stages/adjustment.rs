@@ -2,11 +2,11 @@
 //! the matches.
 
 use super::{Findings, Results, Stage, StageDefinition, required};
-use crate::adjustment::{AdjustmentRound, next_round, shifts_back};
-use crate::execution::Sharded;
-use crate::lines3d::reconstruct_lines;
-use crate::params::Params;
-use crate::scene::{Scene, ViewAdjustment};
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::lines::adjustment::{AdjustmentRound, next_round, shifts_back};
+use crate::lines::lines3d::reconstruct_lines;
+use crate::orienting::scene::{Scene, ViewAdjustment};
 
 /// What the last round found.
 pub(super) type Found = AdjustmentRound;

@@ -2,10 +2,10 @@
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{is_any, required, to_bytes, untraced, warn_if};
-use crate::coplanar::{CoplanarSet, CoplanarTrace, coplanar_sets};
-use crate::execution::Sharded;
-use crate::params::{Method, Params};
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::{Method, Params};
+use crate::orienting::scene::Scene;
+use crate::planes::coplanar::{CoplanarSet, CoplanarTrace, coplanar_sets};
 
 /// Sets of coplanar lines with their polygons, verified or not.
 pub(super) type Found = Outcome<Vec<CoplanarSet>, CoplanarTrace>;

@@ -1,11 +1,11 @@
 //! What somebody corrects of the model by hand.
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
-use crate::corrections::{CorrectionTrace, correct};
-use crate::execution::Sharded;
-use crate::model::RoofModel;
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::roofs::corrections::{CorrectionTrace, correct};
+use crate::roofs::model::RoofModel;
 
 /// The corrected model.
 pub(super) type Found = Outcome<RoofModel, CorrectionTrace>;

@@ -2,10 +2,10 @@
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{from_bytes, required, to_bytes};
-use crate::dense::{CloudComparison, DensePlane, DenseTrace, dense_planes};
-use crate::execution::Sharded;
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::planes::dense::{CloudComparison, DensePlane, DenseTrace, dense_planes};
 
 /// Planes of the surfaces that the views agree on.
 pub(super) type Found = Outcome<Vec<DensePlane>, DenseTrace>;

@@ -2,12 +2,12 @@
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{is_any, required, warn_if};
-use crate::buildings::{RoofTrace, reconstruct_roofs};
-use crate::execution::Sharded;
-use crate::facets::RegisterTrace;
-use crate::model::RoofModel;
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::roofs::buildings::{RoofTrace, reconstruct_roofs};
+use crate::roofs::facets::RegisterTrace;
+use crate::roofs::model::RoofModel;
 
 /// Facets and buildings.
 pub(super) type Found = Outcome<RoofModel, RoofTrace>;

@@ -4,13 +4,15 @@
 use std::sync::Arc;
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition, required};
-use crate::dense::CloudComparison;
-use crate::execution::Sharded;
-use crate::facets::{CompetingPlanes, FacetInput, GroupingTrace, PlacedCloud, competing_planes};
-use crate::objectspace::proposed_planes;
-use crate::params::Params;
-use crate::planes::ProposedPlane;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::planes::dense::CloudComparison;
+use crate::planes::grouping::ProposedPlane;
+use crate::planes::objectspace::proposed_planes;
+use crate::roofs::facets::{
+    CompetingPlanes, FacetInput, GroupingTrace, PlacedCloud, competing_planes,
+};
 
 /// The planes that compete, where there are any.
 pub(super) type Found = Outcome<Option<Arc<CompetingPlanes>>, GroupingTrace>;

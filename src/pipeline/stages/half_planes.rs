@@ -2,12 +2,12 @@
 
 use super::{Findings, Results, Stage, StageDefinition};
 use super::{from_bytes, is_any, required, to_bytes, warn_if};
-use crate::execution::Sharded;
-use crate::ids::LineId;
-use crate::params::Params;
-use crate::planes::{HalfPlane, SweepTrace, sweep_half_planes};
-use crate::scene::Scene;
-use crate::terrain::{Ground, TerrainComparison};
+use crate::base::execution::Sharded;
+use crate::base::ids::LineId;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::planes::half_planes::{HalfPlane, SweepTrace, sweep_half_planes};
+use crate::planes::terrain::{Ground, TerrainComparison};
 
 /// Half-planes, and the ground above which they were sought.
 #[derive(Clone, Debug)]

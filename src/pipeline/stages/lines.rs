@@ -2,11 +2,11 @@
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{is_any, required, to_bytes, untraced, warn_if};
-use crate::execution::Sharded;
-use crate::lines3d::{Line3d, LineTrace, reconstruct_lines};
-use crate::objectspace::adopted_lines;
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::lines::lines3d::{Line3d, LineTrace, reconstruct_lines};
+use crate::orienting::scene::Scene;
+use crate::planes::objectspace::adopted_lines;
 
 /// 3D lines: those of matches, then those adopted from clusters.
 pub(super) type Found = Outcome<Vec<Line3d>, LineTrace>;

@@ -2,11 +2,11 @@
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{required, warn_if};
-use crate::execution::Sharded;
-use crate::linematch::{MatchTrace, match_lines};
-use crate::lines3d::{LineTrack, SupportKind};
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::lines::linematch::{MatchTrace, match_lines};
+use crate::lines::lines3d::{LineTrack, SupportKind};
+use crate::orienting::scene::Scene;
 
 /// Matches.
 pub(super) type Found = Outcome<Vec<LineTrack>, MatchTrace>;

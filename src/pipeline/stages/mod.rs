@@ -28,10 +28,10 @@ mod segments;
 use serde::de::DeserializeOwned;
 use serde::{Serialize, Serializer};
 
-use crate::execution::Sharded;
-use crate::params::Method;
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Method;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
 
 /// Makes the enumeration of the stages, the type of their results and the rows of the table.
 macro_rules! stage_table {

@@ -1,12 +1,12 @@
 //! The textured model, where its walls stand, and with them the files.
 
 use super::{Findings, Results, Stage, StageDefinition};
-use crate::execution::Sharded;
-use crate::model::BuildingWalls;
-use crate::params::Params;
-use crate::scene::Scene;
-use crate::texture::{TextureTrace, TexturedModel, texture_model};
-use crate::walls::place_walls;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::results::texture::{TextureTrace, TexturedModel, texture_model};
+use crate::roofs::model::BuildingWalls;
+use crate::roofs::walls::place_walls;
 
 /// Textures and walls of the model.
 #[derive(Clone, Debug)]

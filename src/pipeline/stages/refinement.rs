@@ -1,11 +1,11 @@
 //! The buildings refined by the edges of all views (B99 2), and which lines they contradict.
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition, required};
-use crate::buildings::{RefinementTrace, refine_buildings, verify_lines};
-use crate::execution::Sharded;
-use crate::model::RoofModel;
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::roofs::buildings::{RefinementTrace, refine_buildings, verify_lines};
+use crate::roofs::model::RoofModel;
 
 /// The roof model.
 pub(super) type Found = Outcome<RoofModel, RefinementTrace>;

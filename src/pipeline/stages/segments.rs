@@ -1,10 +1,10 @@
 //! Straight image segments in every view (B99 3.2).
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition, to_bytes, untraced};
-use crate::execution::{Sharded, sharded_map};
-use crate::lines2d::{ImageSegment, SegmentTrace, detect_segments};
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::{Sharded, sharded_map};
+use crate::base::params::Params;
+use crate::lines::lines2d::{ImageSegment, SegmentTrace, detect_segments};
+use crate::orienting::scene::Scene;
 
 /// Segments of each view, in the order of the views.
 pub(super) type Found = Outcome<Vec<Vec<ImageSegment>>, Vec<SegmentTrace>>;

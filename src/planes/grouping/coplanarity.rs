@@ -4,11 +4,11 @@ use nalgebra::Point3;
 
 use super::plane_group::{GroupingInput, Member, PlaneGroup};
 use super::proposed_plane::ProposedPlane;
-use crate::geometry::Plane;
-use crate::ids::LineId;
-use crate::lines3d::{Line3d, ThetaFrame};
-use crate::math::smaller;
-use crate::params::RoofParams;
+use crate::base::geometry::Plane;
+use crate::base::ids::LineId;
+use crate::base::math::smaller;
+use crate::base::params::RoofParams;
+use crate::lines::lines3d::{Line3d, ThetaFrame};
 
 /// Does the line lie in the group's plane as far as the group's plane is known there?
 pub(super) fn lies_in_plane(

@@ -2,9 +2,9 @@
 
 use super::coplanarity::{all_lie_in, fit_plane, lies_in_plane};
 use super::plane_group::{GroupingInput, Member, PlaneGroup, member};
-use crate::ids::{HalfPlaneId, LineId};
-use crate::lines3d::Side;
-use crate::params::RoofParams;
+use crate::base::ids::{HalfPlaneId, LineId};
+use crate::base::params::RoofParams;
+use crate::lines::lines3d::Side;
 
 /// Half-planes, the most reliable first: similarity times the length of the line.
 pub(super) fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {

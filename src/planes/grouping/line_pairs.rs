@@ -3,18 +3,18 @@
 //!
 //! B99 5: "an efficient and robust approach would use both" half-planes and coplanar lines. Two
 //! neighbouring lines that span a plane propose it; the photo-consistency beside them decides
-//! ([`crate::planes::hypothesis`]). Lines that are neighbours around a corner only are paired where
+//! ([`crate::planes::hypotheses::hypothesis`]). Lines that are neighbours around a corner only are paired where
 //! the sweep found no half-plane between them.
 
 use super::coplanarity::{all_lie_in, fit_plane, lies_in_plane};
 use super::growth::{extend, infer_sides};
 use super::plane_group::{GroupingInput, PlaneGroup, member};
 use super::region::PlanRegion;
-use crate::geometry::Plane;
-use crate::ids::{HalfPlaneId, LineId};
-use crate::lines3d::{Line3d, Side};
-use crate::params::RoofParams;
-use crate::planes::half_plane::is_wall;
+use crate::base::geometry::Plane;
+use crate::base::ids::{HalfPlaneId, LineId};
+use crate::base::params::RoofParams;
+use crate::lines::lines3d::{Line3d, Side};
+use crate::planes::half_planes::is_wall;
 
 /// Planes of two neighbouring coplanar lines that no half-plane explains (B99 5: "an efficient and
 /// robust approach would use both"): hipped roofs without texture have ridges and eaves, but no
@@ -142,7 +142,7 @@ mod tests {
     use super::super::group_planes;
     use super::super::neighbourhood::line_neighbours;
     use super::*;
-    use crate::testing::line;
+    use crate::roofs::testing::line;
     use nalgebra::Point3;
 
     /// The four hips of a roof of 14 m by 8 m and 4 m height whose ridge was not found. Hip 3 is a

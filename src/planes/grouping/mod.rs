@@ -45,8 +45,8 @@ pub(crate) use region::region_beside;
 
 use self::growth::{by_strength, grow, infer_sides, merge_groups};
 use self::line_pairs::{add_line_pairs, with_lines_around};
-use crate::ids::HalfPlaneId;
-use crate::params::RoofParams;
+use crate::base::ids::HalfPlaneId;
+use crate::base::params::RoofParams;
 
 /// Groups all half-planes; every half-plane ends in exactly one group.
 pub(crate) fn group_planes(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGroup> {
@@ -61,7 +61,7 @@ pub(crate) fn group_planes(input: &GroupingInput, params: &RoofParams) -> Vec<Pl
     let mut groups = merge_groups(input, groups, params);
     add_line_pairs(input, &by_line, &mut groups, params);
     groups.iter_mut().for_each(|g| infer_sides(input, g));
-    crate::execution::map(&groups, |_, g| match g.half_planes().is_empty() {
+    crate::base::execution::map(&groups, |_, g| match g.half_planes().is_empty() {
         true => with_lines_around(input, g, params),
         false => g.clone(),
     })

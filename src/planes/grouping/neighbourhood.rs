@@ -11,8 +11,8 @@
 
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
-use crate::ids::LineId;
-use crate::lines3d::Line3d;
+use crate::base::ids::LineId;
+use crate::lines::lines3d::Line3d;
 
 /// For each line its neighbours in ascending order, itself left out.
 #[derive(Clone, Debug, Default)]
@@ -136,7 +136,7 @@ const CORNER_SHARE: f64 = 0.1;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Segment3;
+    use crate::base::geometry::Segment3;
     use nalgebra::{Matrix3, Point3};
 
     fn line(a: [f64; 2], b: [f64; 2]) -> Line3d {

@@ -5,10 +5,10 @@ use serde::Serialize;
 
 use super::neighbourhood::LineNeighbours;
 use super::proposed_plane::ProposedPlane;
-use crate::geometry::Plane;
-use crate::ids::{HalfPlaneId, LineId, ProposalOrigin};
-use crate::lines3d::{Line3d, Side};
-use crate::planes::half_plane::HalfPlane;
+use crate::base::geometry::Plane;
+use crate::base::ids::{HalfPlaneId, LineId, ProposalOrigin};
+use crate::lines::lines3d::{Line3d, Side};
+use crate::planes::half_planes::HalfPlane;
 
 /// A line that belongs to a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

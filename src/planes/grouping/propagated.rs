@@ -3,16 +3,16 @@
 //! Of the strips of a saw-tooth roof all slope alike, and the sweep finds some. Beside a level line
 //! that runs along a neighbouring plane, a side without a half-plane is offered one parallel to
 //! that plane. The lines are then grouped as with any half-plane (B99 4.2); each is then tested by
-//! its photo-consistency ([`crate::planes::hypothesis`]).
+//! its photo-consistency ([`crate::planes::hypotheses::hypothesis`]).
 
 use super::growth::{by_strength, grow, infer_sides, merge_groups};
 use super::plane_group::{GroupingInput, PlaneGroup};
-use crate::geometry::Plane;
-use crate::ids::{HalfPlaneId, LineId};
-use crate::lines3d::{Side, ThetaFrame};
-use crate::params::RoofParams;
-use crate::planes::half_plane::{HalfPlane, is_wall};
-use crate::terrain::Ground;
+use crate::base::geometry::Plane;
+use crate::base::ids::{HalfPlaneId, LineId};
+use crate::base::params::RoofParams;
+use crate::lines::lines3d::{Side, ThetaFrame};
+use crate::planes::half_planes::{HalfPlane, is_wall};
+use crate::planes::terrain::Ground;
 
 /// Length from which on a line is offered planes, metres. Assumption: of a roof, not of a dormer.
 const LEAST_LENGTH: f64 = 3.0;
@@ -136,9 +136,9 @@ mod tests {
     use super::super::group_planes;
     use super::super::neighbourhood::line_neighbours;
     use super::*;
-    use crate::ids::ViewId;
-    use crate::lines3d::Line3d;
-    use crate::testing::line;
+    use crate::base::ids::ViewId;
+    use crate::lines::lines3d::Line3d;
+    use crate::roofs::testing::line;
     use nalgebra::Point3;
 
     /// The ridges of a saw-tooth roof at 8 m, 4 m apart; the sweep has found that the first strip
@@ -155,7 +155,7 @@ mod tests {
             foot,
         ];
         let frame = ThetaFrame::new(&lines[0].segment, Side::Right).expect("not vertical");
-        let theta = -crate::math::atan2(1.0, 2.0);
+        let theta = -crate::base::math::atan2(1.0, 2.0);
         let swept = HalfPlane {
             views: vec![ViewId(0), ViewId(1)],
             similarity: 0.8,

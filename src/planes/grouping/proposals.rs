@@ -11,9 +11,9 @@ use super::coplanarity::{fit_plane, lies_in_plane};
 use super::plane_group::{GroupingInput, Member, PlaneGroup, member};
 use super::proposed_plane::ProposedPlane;
 use super::region::PlanRegion;
-use crate::ids::LineId;
-use crate::lines3d::{Line3d, Side};
-use crate::params::RoofParams;
+use crate::base::ids::LineId;
+use crate::base::params::RoofParams;
+use crate::lines::lines3d::{Line3d, Side};
 
 /// Adds the proposed planes to the groups, those in the plane of a group to it.
 pub(crate) fn add_proposals(
@@ -93,9 +93,9 @@ fn side_of(line: &Line3d, p: &Point2<f64>) -> Side {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Plane;
-    use crate::ids::ProposalOrigin;
-    use crate::testing::line;
+    use crate::base::geometry::Plane;
+    use crate::base::ids::ProposalOrigin;
+    use crate::roofs::testing::line;
     use nalgebra::{Point3, Vector3};
 
     const ROOF_Z: f64 = 5.0;

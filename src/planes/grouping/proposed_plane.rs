@@ -3,9 +3,9 @@
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::{Plane, mean_point};
-use crate::ids::ProposalOrigin;
-use crate::params::RoofParams;
+use crate::base::geometry::{Plane, mean_point};
+use crate::base::ids::ProposalOrigin;
+use crate::base::params::RoofParams;
 
 /// A convex polygon in a plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

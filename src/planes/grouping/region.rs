@@ -6,10 +6,10 @@ use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 
 use super::plane_group::{GroupingInput, PlaneGroup};
 use super::proposed_plane::ProposedPlane;
-use crate::geometry::{Plane, bounds};
-use crate::lines3d::Side;
-use crate::math::{larger, smaller};
-use crate::params::RoofParams;
+use crate::base::geometry::{Plane, bounds};
+use crate::base::math::{larger, smaller};
+use crate::base::params::RoofParams;
+use crate::lines::lines3d::Side;
 
 /// How far a region reaches behind its line, metres: more than the line's own uncertainty.
 pub(crate) const MARGIN: f64 = 0.5;
@@ -252,9 +252,9 @@ fn is_inside(ring: &[Point2<f64>], p: &Point2<f64>) -> bool {
 
 /// What a plane may cover to both sides of a line in it.
 #[cfg(test)]
-pub(crate) fn region_beside(line: crate::lines3d::Line3d, plane: Plane) -> PlanRegion {
+pub(crate) fn region_beside(line: crate::lines::lines3d::Line3d, plane: Plane) -> PlanRegion {
     let member = |side| super::plane_group::Member {
-        line: crate::ids::LineId(0),
+        line: crate::base::ids::LineId(0),
         side: Some(side),
         half_plane: None,
     };
@@ -280,8 +280,8 @@ mod tests {
     use super::super::neighbourhood::line_neighbours;
     use super::super::plane_group::Member;
     use super::*;
-    use crate::ids::LineId;
-    use crate::testing::line;
+    use crate::base::ids::LineId;
+    use crate::roofs::testing::line;
 
     /// A shed roof that rises to the north.
     fn shed() -> Plane {

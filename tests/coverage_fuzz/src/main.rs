@@ -11,10 +11,10 @@ use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
 use ridgeline::InputFile;
-use ridgeline::known::{Register, Terrain, WorldSystem};
-use ridgeline::orientation::{detect, orientation_sets};
-use ridgeline::raster::{image_header, load_image, load_window};
-use ridgeline::scene_loader::{open_project, unpack};
+use ridgeline::orienting::known::{Register, Terrain, WorldSystem};
+use ridgeline::orienting::orientation::{detect, orientation_sets};
+use ridgeline::photographs::raster::{image_header, load_image, load_window};
+use ridgeline::orienting::scene_loader::{open_project, unpack};
 
 /// Two record separators: what hardly stands in a file.
 const BORDER: &[u8] = b"\x1e\x1e";

@@ -1,7 +1,7 @@
-"""Fits src/evidence/clutter.json, how the heights at which views agree lie about a roof, to rendered scenes with truth.
+"""Fits src/base/evidence/clutter.json, how the heights at which views agree lie about a roof, to rendered scenes with truth.
 
 The windows inside every true facet are compared in all views at heights from 1.2 m below it to 1.6 m above. Numbers of
-the table are those under which the true height is likeliest among all (src/buildings/parapets.rs has the model); a tenth
+the table are those under which the true height is likeliest among all (src/roofs/buildings/parapets.rs has the model); a tenth
 of the facets may be beyond it. The share of rims stays as it is: it counts what was found, not what is true.
 """
 import itertools
@@ -14,7 +14,7 @@ from scipy.ndimage import map_coordinates, uniform_filter
 from shapely import contains_xy
 from shapely.geometry import Polygon
 
-# As in src/photoconsistency: cells of a window's side, and their width, metres.
+# As in src/planes/photoconsistency: cells of a window's side, and their width, metres.
 WINDOW, STEP_M = 11, 0.08
 HEIGHTS = np.arange(-1.2, 1.61, 0.1)
 # Heights that count as the right one.

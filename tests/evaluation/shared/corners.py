@@ -1,4 +1,4 @@
-"""Fits src/evidence/corners.json, how often and by what angle outlines of roofs turn, to scenes with truth.
+"""Fits src/base/evidence/corners.json, how often and by what angle outlines of roofs turn, to scenes with truth.
 
 Counts the corners of true facets in plan. The standard deviation of a turn and the weight stay as they are: truth has
 no error of measurement, and the weight is what models of the scenes became best with.

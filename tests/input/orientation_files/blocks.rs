@@ -1,7 +1,7 @@
 //! BlocksExchange.
 
 use nalgebra::{Matrix3, Point3, Vector3};
-use ridgeline::orientation::{InputFile, StatedReference, detect, orientation_sets};
+use ridgeline::orienting::orientation::{InputFile, StatedReference, detect, orientation_sets};
 
 use super::{k, near, read, refusal, replaced, truth};
 

@@ -6,7 +6,7 @@
 use std::io::Cursor;
 
 use nalgebra::{Matrix3, Point3, Vector3};
-use ridgeline::orientation::{
+use ridgeline::orienting::orientation::{
     InputFile, Orientation, StatedReference, detect, orientation_sets,
     rotation_from_omega_phi_kappa,
 };

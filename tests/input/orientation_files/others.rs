@@ -1,7 +1,7 @@
 //! Pix4D, OpenSfM, ODM, nerfstudio, Bundler, INPHO, MicMac.
 
-use ridgeline::orientation::{InputFile, StatedReference};
-use ridgeline::scene_loader::{LoadOptions, inspect_files, load_scene};
+use ridgeline::orienting::orientation::{InputFile, StatedReference};
+use ridgeline::orienting::scene_loader::{LoadOptions, inspect_files, load_scene};
 
 use super::blocks::BLOCKS;
 use super::{images, k, near, read, refusal, replaced};

@@ -4,7 +4,7 @@
 #![allow(clippy::disallowed_methods)]
 
 use nalgebra::{Matrix3, Point2, Point3};
-use ridgeline::orientation::Orientation;
+use ridgeline::orienting::orientation::Orientation;
 
 use super::blocks::{block_of, matrix_elements};
 use super::{k, near, read, replaced, truth};

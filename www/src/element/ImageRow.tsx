@@ -1,8 +1,8 @@
 /** Photographs beside each other, with what a stage found drawn over. */
 import { ImageCanvas } from "../app/images/ImageCanvas";
 import { overlayOf } from "../app/images/overlays";
-import { marksOf } from "../app/images/selectionMarks";
 import type { Tab } from "../app/state/methods";
+import { marksOf } from "../kinds/kinds";
 import { type Figure, viewName } from "../shared/figure";
 
 interface Props {

@@ -1,99 +1,106 @@
 /** The thing that was picked, by its index in the results; anywhere it is picked, it lights up everywhere. */
 import type { Side } from "./records";
 
-export type Selection =
-  | { kind: "segment"; view: number; index: number }
+/**
+ * The kinds of things, each with its text in links, "word:field" or "word:field.field". The words are a format and stay; what is
+ * known of a kind is in its file in `kinds/`.
+ */
+const TEXTS = {
+  view: "view:index",
+  segment: "segment:view.index",
   /** A line of edgels that is no segment. */
-  | { kind: "rejectedSegment"; view: number; index: number }
-  | { kind: "line"; index: number }
+  rejectedSegment: "refused:view.index",
+  /** W96: a region of a view. */
+  region: "region:view.index",
+  line: "line:index",
   /** A side of a 3D line, whether it has a half-plane or not. */
-  | { kind: "side"; line: number; side: Side }
-  | { kind: "halfplane"; index: number }
-  /** A plane of dense matching. */
-  | { kind: "dense"; index: number }
-  /** A set of coplanar lines. */
-  | { kind: "coplanar"; index: number }
-  /** A corner in space with its edges and regions. */
-  | { kind: "corner"; index: number }
-  | { kind: "group"; index: number }
-  | { kind: "facet"; index: number }
-  /** A facet that was rejected. */
-  | { kind: "rejectedFacet"; index: number }
-  /** A footprint of the register that is known beforehand. */
-  | { kind: "footprint"; index: number }
-  /** What refinement made of a building; one of the relations tested there. */
-  | { kind: "refinement"; index: number }
-  | { kind: "relation"; building: number; index: number }
-  | { kind: "surface"; surface: string; building: number | null; facet: number | null; areaM2: number }
-  | { kind: "view"; index: number }
-  /** W96: a region of a view; a pair of parallel lines. */
-  | { kind: "region"; view: number; index: number }
-  | { kind: "pair"; index: number }
+  side: "side:line.side",
+  halfplane: "halfplane:index",
+  /** W96: a pair of parallel lines. */
+  pair: "pair:index",
   /** A rejected cluster of a cluster plane; the selected ones are 3D lines. */
-  | { kind: "cluster"; plane: number; index: number };
+  cluster: "cluster:plane.index",
+  /** A plane of dense matching. */
+  dense: "dense:index",
+  /** A set of coplanar lines. */
+  coplanar: "coplanar:index",
+  /** A corner in space with its edges and regions. */
+  corner: "corner:index",
+  group: "group:index",
+  facet: "facet:index",
+  rejectedFacet: "withdrawn:index",
+  /** A surface of the model, which is read back as its facet. */
+  surface: "facet:facet",
+  /** What refinement made of a building. */
+  refinement: "refinement:index",
+  /** One of the relations tested there. */
+  relation: "relation:building.index",
+  /** A footprint of the register that is known beforehand. */
+  footprint: "footprint:index",
+} as const;
+
+type Texts = typeof TEXTS;
+export type KindName = keyof Texts;
+
+export const KIND_NAMES = Object.keys(TEXTS) as readonly KindName[];
+
+type FieldsOf<Text> = Text extends `${string}:${infer First}.${infer Second}`
+  ? First | Second
+  : Text extends `${string}:${infer Only}`
+    ? Only
+    : never;
+
+interface Surface {
+  kind: "surface";
+  surface: string;
+  building: number | null;
+  facet: number | null;
+  areaM2: number;
+}
+
+/** A selection of one kind. */
+export type Picked<K extends KindName> = K extends "surface"
+  ? Surface
+  : { [N in "kind" | FieldsOf<Texts[K]>]: N extends "kind" ? K : N extends "side" ? Side : number };
+
+export type Selection = { [K in KindName]: Picked<K> }[KindName];
+
+/** The kinds that an index alone tells apart. */
+export type IndexedKind = {
+  [K in KindName]: FieldsOf<Texts[K]> extends "index" ? K : never;
+}[KindName];
 
 /** Where the 3D view's camera stands and what it looks at: x, y, z each, metres, local frame. */
 export type Standpoint = readonly [number, number, number, number, number, number];
 
-/** "line:12", "segment:0.44" (view first), "side:12.left"; the words are a format and stay. */
+/** Of each kind the parts of its text. */
+const PARTS = Object.fromEntries(
+  KIND_NAMES.map((kind) => {
+    const [word = "", ...fields] = TEXTS[kind].split(/[:.]/);
+    return [kind, { word, fields }];
+  }),
+) as unknown as Readonly<Record<KindName, { word: string; fields: readonly string[] }>>;
+
+/** "line:12", "segment:0.44", "side:12.left"; null where nothing names it. */
 export function formatSelection(picked: Selection): string | null {
-  switch (picked.kind) {
-    case "segment":
-    case "region":
-      return `${picked.kind}:${picked.view}.${picked.index}`;
-    case "rejectedSegment":
-      return `refused:${picked.view}.${picked.index}`;
-    case "rejectedFacet":
-      return `withdrawn:${picked.index}`;
-    case "cluster":
-      return `cluster:${picked.plane}.${picked.index}`;
-    case "relation":
-      return `relation:${picked.building}.${picked.index}`;
-    case "side":
-      return `side:${picked.line}.${picked.side}`;
-    case "surface":
-      return picked.facet === null ? null : `facet:${picked.facet}`;
-    default:
-      return `${picked.kind}:${picked.index}`;
-  }
+  const { word, fields } = PARTS[picked.kind];
+  const values = fields.map((name) => (picked as unknown as Record<string, unknown>)[name]);
+  return values.includes(null) ? null : `${word}:${values.join(".")}`;
 }
 
+/** Null for any other text; where two kinds have the same text, it is the first one. */
 export function parseSelection(text: string | null): Selection | null {
-  const found = /^([a-z]+):(\d{1,9})(?:\.(\d{1,9}|left|right))?$/.exec(text ?? "");
-  if (found === null) {
+  const found = /^([a-z]+):(\d{1,9})(?:\.(\d{1,9}|left|right))?$/.exec(text ?? "") ?? [];
+  const [, named, ...values] = found.filter((part) => part !== undefined);
+  const isSide = (i: number) => values[i] === "left" || values[i] === "right";
+  const kind = KIND_NAMES.find((name) => {
+    const { word, fields } = PARTS[name];
+    const fits = fields.every((field, i) => (field === "side") === isSide(i));
+    return word === named && fields.length === values.length && fits;
+  });
+  if (kind === undefined) {
     return null;
   }
-  const [, kind, first, second] = found as unknown as [string, string, string, string | undefined];
-  const index = Number(first);
-  switch (kind) {
-    case "segment":
-    case "region":
-      return /^\d+$/.test(second ?? "") ? { kind, view: index, index: Number(second) } : null;
-    case "refused":
-      return /^\d+$/.test(second ?? "")
-        ? { kind: "rejectedSegment", view: index, index: Number(second) }
-        : null;
-    case "cluster":
-      return /^\d+$/.test(second ?? "") ? { kind, plane: index, index: Number(second) } : null;
-    case "relation":
-      return /^\d+$/.test(second ?? "") ? { kind, building: index, index: Number(second) } : null;
-    case "side":
-      return second === "left" || second === "right" ? { kind, line: index, side: second } : null;
-    case "line":
-    case "halfplane":
-    case "dense":
-    case "coplanar":
-    case "corner":
-    case "group":
-    case "refinement":
-    case "facet":
-    case "footprint":
-    case "view":
-    case "pair":
-      return { kind, index };
-    case "withdrawn":
-      return { kind: "rejectedFacet", index };
-    default:
-      return null;
-  }
+  const places = PARTS[kind].fields.map((field, i) => [field, isSide(i) ? values[i] : Number(values[i])]);
+  return { kind, ...Object.fromEntries(places) } as Selection;
 }

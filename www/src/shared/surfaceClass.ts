@@ -30,3 +30,12 @@ export function gradientOf({ plane: { normal } }: Pick<DensePlane, "plane">): [n
 export function heightAt({ plane: { normal, d } }: Pick<DensePlane, "plane">, x: number, y: number): number {
   return -(normal[0] * x + normal[1] * y + d) / normal[2];
 }
+
+/** Standard deviation of a plane's slope, radians, from that of its gradient; of a level one along x or y, whichever is larger. */
+export function slopeSigma(plane: Pick<DensePlane, "plane" | "covariance">): number {
+  const [gx, gy] = gradientOf(plane);
+  const rise = Math.hypot(gx, gy);
+  const [, [, xx, xy], [, , yy]] = plane.covariance;
+  const along = rise === 0 ? Math.max(xx, yy) : (gx * gx * xx + 2 * gx * gy * xy + gy * gy * yy) / rise ** 2;
+  return Math.sqrt(along) / (1 + rise ** 2);
+}

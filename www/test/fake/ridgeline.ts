@@ -468,7 +468,9 @@ export class Session implements CoreSession {
           error_before_px: 0.8,
           error_after_px: 0.2,
           largest_move_m: 0.1,
-          relations: [{ kind: "horizontal", sides: [{ p0, p1 }], deviation_m: 0.01, chi2: 0.4, adopted: true }],
+          relations: [
+            { kind: "horizontal", sides: [{ p0, p1 }], deviation_m: 0.01, chi2: 0.4, adopted: true },
+          ],
           refused: null,
         },
       ],

@@ -5,6 +5,9 @@ import { describe, expect, it } from "vitest";
 
 const SOURCES = fileURLToPath(new URL("../../src", import.meta.url));
 
+/** What is known of the things that can be picked. */
+const KINDS = ["kinds/parts", "kinds/images", "kinds/lines", "kinds/planes", "kinds/roofs", "kinds"];
+
 /** The rooms from the ground up, each with those that it may import from besides itself. */
 const ROOMS: Readonly<Record<string, readonly string[]>> = {
   shared: [],
@@ -21,6 +24,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "app/state",
       "app/screen",
       "app/parts",
+      ...KINDS,
       "app/glossary",
       "app/settings",
       "app/tiles",
@@ -50,6 +54,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "core",
       "app/state",
       "app/parts",
+      ...KINDS,
       "app/glossary",
       "app/session",
       "app/selection",
@@ -107,7 +112,7 @@ const imports = new Map(modules.map((path) => [path, importsOf(path)]));
 
 function importsOf(path: string): string[] {
   const text = readFileSync(join(SOURCES, path), "utf8");
-  return [...text.matchAll(/(?:^import|^export|^\}|\bimport\() ?[^;"]*"(\.[^"]+)"/gm)]
+  const named = [...text.matchAll(/(?:^import|^export|^\}|\bimport\() ?[^;"]*"(\.[^"]+)"/gm)]
     .map(([, named]) => join(dirname(path), named as string))
     .flatMap((named) => {
       const found = [named, `${named}.ts`, `${named}.tsx`, named.replace(/\.js$/, ".ts")].find((one) =>
@@ -115,6 +120,20 @@ function importsOf(path: string): string[] {
       );
       return found === undefined ? [] : [found];
     });
+  return [...named, ...globbed(path, text)];
+}
+
+/** The files that a module imports by a pattern. */
+function globbed(path: string, text: string): string[] {
+  const [, pattern] = /import\.meta\.glob[^"]*"(\.[^"]+)"/.exec(text) ?? [];
+  if (pattern === undefined) {
+    return [];
+  }
+  const words: Record<string, string> = { ".": "\\.", "*": "[^/]+", "{": "(", ",": "|", "}": ")" };
+  const wanted = new RegExp(
+    `^${join(dirname(path), pattern).replace(/[.*{,}]/g, (sign) => words[sign] ?? "")}$`,
+  );
+  return files.filter((file) => wanted.test(file));
 }
 
 function roomOf(path: string): string {
@@ -222,7 +241,8 @@ describe("figures in other pages", () => {
 /** Whether a module of this name is imported for more than its types. */
 function isRunning(text: string, name: string): boolean {
   const all = [...text.matchAll(/^(?:import|export) (type )?[^;]*"\.[^"]*\/(\w+)"/gm)];
-  return all.some(([, isType, named]) => named === name && isType === undefined);
+  const isGlobbed = text.includes("import.meta.glob");
+  return isGlobbed || all.some(([, isType, named]) => named === name && isType === undefined);
 }
 
 describe("the page's state", () => {

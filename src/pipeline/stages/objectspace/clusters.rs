@@ -2,10 +2,10 @@
 
 use super::super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::super::{is_any, required, to_bytes, untraced, warn_if};
-use crate::execution::Sharded;
-use crate::objectspace::{ClusterTrace, FoundLine, find_clusters};
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::planes::objectspace::{ClusterTrace, FoundLine, find_clusters};
 
 /// 3D lines; a trace for each window and direction.
 pub(in super::super) type Found = Outcome<Vec<FoundLine>, Vec<ClusterTrace>>;

@@ -2,10 +2,10 @@
 
 use super::super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::super::{required, to_bytes, untraced, warn_if};
-use crate::execution::Sharded;
-use crate::objectspace::{Window, WindowTrace, find_directions};
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::planes::objectspace::{Window, WindowTrace, find_directions};
 
 /// Windows with their main directions.
 pub(in super::super) type Found = Outcome<Vec<Window>, WindowTrace>;

@@ -2,11 +2,12 @@
 
 use super::super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::super::{from_bytes, is_any, required, to_bytes, warn_if};
-use crate::execution::Sharded;
-use crate::model::RoofModel;
-use crate::objectspace::{RectangleTrace, find_rectangles};
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::planes::objectspace::{RectangleTrace, find_rectangles};
+use crate::roofs::buildings::roofs_of_rectangles;
+use crate::roofs::model::RoofModel;
 
 /// Planes and buildings.
 pub(in super::super) type Found = Outcome<RoofModel, RectangleTrace>;
@@ -27,7 +28,8 @@ impl StageDefinition for Rectangles {
         let lines = &required(&before.regions).value;
         let windows = &required(&before.directions).value;
         let clusters = &required(&before.clusters).value;
-        Ok(find_rectangles(scene, lines, windows, clusters, params)?.into())
+        let (ground, trace) = find_rectangles(scene, lines, windows, clusters, params)?;
+        Ok((roofs_of_rectangles(&trace, &ground), trace).into())
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {

@@ -1,10 +1,10 @@
 //! Regions with straight boundaries in every view (W96 3.3).
 
 use super::super::{Findings, Outcome, Results, Stage, StageDefinition, to_bytes, untraced};
-use crate::execution::Sharded;
-use crate::objectspace::{RegionLine, Segmentation, find_regions};
-use crate::params::Params;
-use crate::scene::Scene;
+use crate::base::execution::Sharded;
+use crate::base::params::Params;
+use crate::orienting::scene::Scene;
+use crate::planes::objectspace::{RegionLine, Segmentation, find_regions};
 
 /// Lines on the boundaries of the regions of each view, in the order of the views.
 pub(in super::super) type Found = Outcome<Vec<Vec<RegionLine>>, Vec<Segmentation>>;

@@ -2,6 +2,7 @@
 import "./corrections.css";
 import { signal, useSignalEffect } from "@preact/signals";
 import { useState } from "preact/hooks";
+import { facetOf } from "../../kinds/kinds";
 import type { Correction, Facet, NotApplied, Vec3 } from "../../shared/records";
 import { counted } from "../parts/counted";
 import { saveFile } from "../parts/saveFile";
@@ -108,8 +109,7 @@ function EdgeTool() {
 
 /** The facet that is selected, in the model or among the facets. */
 export function selectedFacet(): number | null {
-  const picked = selection.value;
-  return picked?.kind === "facet" ? picked.index : picked?.kind === "surface" ? picked.facet : null;
+  return facetOf(selection.value);
 }
 
 function goOn(): void {

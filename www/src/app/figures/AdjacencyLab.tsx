@@ -1,10 +1,10 @@
 /** B99 2 (Bonn): the adjacency graph over an image; a corner that is picked there lights up in the other views and in space. */
 import "./figures.css";
+import { marksOf } from "../../kinds/kinds";
 import type { Figure } from "../../shared/figure";
 import { Filmstrip } from "../images/Filmstrip";
 import { graphOverlay } from "../images/graphOverlay";
 import { ImageCanvas } from "../images/ImageCanvas";
-import { marksOf } from "../images/selectionMarks";
 import { ViewPicker } from "../images/ViewPicker";
 
 export function AdjacencyLab({ figure }: { figure: Figure }) {

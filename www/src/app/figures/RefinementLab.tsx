@@ -1,12 +1,12 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
 import "./figures.css";
+import { buildingOfFacet, relationLimit } from "../../kinds/parts/refinedBuildings";
 import type { Figure } from "../../shared/figure";
 import type { BuildingRefinement, TestedRelation } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, Fit, type Frame } from "../parts/charts";
 import { counted } from "../parts/counted";
 import { RELATION_WORDS, refinementWords } from "../parts/reasonText";
-import { buildingOfFacet, relationLimit } from "../selection/refinedBuildings";
 
 const KINDS = ["horizontal", "parallel", "perpendicular", "equal_height", "symmetric"] as const;
 /** The axis is the logarithm of chi-square, between these. */

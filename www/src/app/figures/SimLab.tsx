@@ -1,6 +1,7 @@
 /** B99 figures 10 to 14: the half-plane turned by hand, the views warped onto it, and Sim(theta). */
 import "./figures.css";
 import { useEffect, useRef } from "preact/hooks";
+import { questionOf } from "../../kinds/kinds";
 import type { WarpedPicture } from "../../shared/calls";
 import { type Figure, viewName } from "../../shared/figure";
 import { category } from "../../shared/palette";
@@ -8,7 +9,7 @@ import type { SideTrace } from "../../shared/records";
 import { axesOf, Chart, closedPathOf, Fit, type Frame, pathOf } from "../parts/charts";
 import { counted } from "../parts/counted";
 import { REJECTION_WORDS } from "../parts/reasonText";
-import { bestTheta, sideOf } from "../selection/inquiry";
+import { bestTheta } from "../selection/inquiry";
 
 const DEGREE = Math.PI / 180;
 
@@ -69,7 +70,8 @@ interface OfSide {
 /** Which side of which line, the other one at hand, and why it was rejected. */
 function SideHead({ figure, side }: OfSide) {
   const other = side.side === "left" ? "right" : "left";
-  const isPicked = sideOf(figure.selection, figure.results)?.line === side.line;
+  const asked = questionOf(figure.selection, figure.results);
+  const isPicked = asked?.about === "side" && asked.line === side.line;
   return (
     <div class="row spread">
       <p class="lab-head">

@@ -1,12 +1,13 @@
 /** The selected thing in every view, each picture zoomed to it: "it lights up in every image". */
 import "./images.css";
 import { useEffect, useRef } from "preact/hooks";
+import { marksOf } from "../../kinds/kinds";
+import type { Mark } from "../../kinds/parts/marks";
 import type { Figure } from "../../shared/figure";
 import type { Selection } from "../../shared/selection";
 import { textScale } from "../state/textScale";
 import { drawView } from "./drawing";
 import { paint } from "./pen";
-import { type Mark, marksOf } from "./selectionMarks";
 import { fitPoints, type Size } from "./viewport";
 
 const WIDTH_PX = 190;

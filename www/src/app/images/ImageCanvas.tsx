@@ -1,5 +1,6 @@
 /** One view, to zoom (wheel, two fingers, + and -), pan (drag, arrows), fit (0) and pick (click, tap, long press). */
 import { useEffect, useRef, useState } from "preact/hooks";
+import type { Mark } from "../../kinds/parts/marks";
 import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_STRIDE } from "../../shared/flatArrays";
 import type { Vec2 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
@@ -8,7 +9,6 @@ import { textScale } from "../state/textScale";
 import { drawView, type Overlay } from "./drawing";
 import { cornerAt } from "./graphOverlay";
 import { paint } from "./pen";
-import type { Mark } from "./selectionMarks";
 import {
   fitImage,
   fitPoints,

@@ -1,13 +1,14 @@
 /** The image tabs: one view or all of them, with what the tab's stage found drawn over. */
 import "./images.css";
 import type { ComponentChildren } from "preact";
+import { marksOf } from "../../kinds/kinds";
+import type { Mark } from "../../kinds/parts/marks";
 import type { Figure } from "../../shared/figure";
 import type { Vec2 } from "../../shared/records";
 import { Legend } from "../parts/Legend";
 import { followsSelection, showRejected, tab, withRejected, zoomToSelection } from "../state/viewState";
 import { ImageCanvas } from "./ImageCanvas";
 import { overlayOf } from "./overlays";
-import { type Mark, marksOf } from "./selectionMarks";
 import { ALL_VIEWS, ViewPicker } from "./ViewPicker";
 
 /** Something that is drawn in the views by clicks. */

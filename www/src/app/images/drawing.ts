@@ -1,5 +1,6 @@
 /** Draws one view's image and overlay. It computes nothing but where things lie on the screen. */
 
+import type { Mark } from "../../kinds/parts/marks";
 import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE } from "../../shared/flatArrays";
 import { category, PALETTE } from "../../shared/palette";
 import type { Vec2 } from "../../shared/records";
@@ -7,7 +8,6 @@ import type { Selection } from "../../shared/selection";
 import { textScale } from "../state/textScale";
 import type { GraphOverlay } from "./graphOverlay";
 import type { Pen, PenPath, Window } from "./pen";
-import type { Mark } from "./selectionMarks";
 
 export interface Overlay {
   /** x0, y0, x1, y1 per segment. */

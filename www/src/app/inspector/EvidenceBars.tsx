@@ -1,6 +1,7 @@
 /** What speaks for a thing, to the right of a middle line, and against it, to the left. */
+
+import type { Bar } from "../../kinds/parts/rows";
 import { signed } from "../parts/numberText";
-import type { Bar } from "./rowLinks";
 
 /** The longest bar has at least this length, nats: what says little looks little. */
 const LEAST_SCALE = 2;

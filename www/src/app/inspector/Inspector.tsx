@@ -1,14 +1,15 @@
 /** The picked thing in numbers, with units and the paper's symbols. */
 
 import "./inspector.css";
-import { select, selection } from "../state/viewState";
+import { placeAmong, rowsOf, siblingsOf, titleOf } from "../../kinds/kinds";
+import type { Bars, Related, Row } from "../../kinds/parts/rows";
+import { pageFigure } from "../selection/selectionQueries";
+import { select, selection, tab } from "../state/viewState";
 import { EvidenceBars } from "./EvidenceBars";
-import type { Bars, Related, Row } from "./rowLinks";
-import { rowsOf, titleOf } from "./selectionRows";
-import { placeAmong, siblingsOf } from "./siblings";
 
 export function Inspector() {
   const picked = selection.value;
+  const figure = pageFigure();
   return (
     <section class="panel" data-testid="inspector">
       <div class="row">
@@ -30,7 +31,7 @@ export function Inspector() {
       {picked === null ? (
         <p class="muted">Click a segment, a line, a half-plane, a facet or a wall to see its numbers.</p>
       ) : (
-        <Facts title={titleOf(picked)} rows={rowsOf(picked)} />
+        <Facts title={titleOf(picked, figure)} rows={rowsOf(picked, figure)} />
       )}
     </section>
   );
@@ -38,7 +39,7 @@ export function Inspector() {
 
 /** To the previous and the next thing of the kind: what can be picked with a pointer can be reached with keys. */
 function Steps() {
-  const items = siblingsOf(selection.value);
+  const items = siblingsOf(selection.value, tab.value, pageFigure());
   const at = placeAmong(items, selection.value);
   if (items.length === 0) {
     return null;

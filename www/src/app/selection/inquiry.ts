@@ -1,7 +1,10 @@
 /** What follows from a selection: a figure asks the core about the thing that was picked. */
+
+import { questionOf } from "../../kinds/kinds";
+import type { Question } from "../../kinds/parts/kind";
 import type { Args, CallName, Result } from "../../shared/calls";
 import { NO_DETAIL, type Results, type Resumed, type SelectionDetail } from "../../shared/figure";
-import type { Side, SideTrace } from "../../shared/records";
+import type { SideTrace } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 
 /** Whose selection it is, and whom it asks. */
@@ -32,16 +35,13 @@ export class Inquiry {
 
   /** Asks about the present selection. */
   async follow(): Promise<void> {
-    const picked = this.#of.selection();
-    if (picked?.kind === "segment") {
-      await this.#askAboutSegment(picked.view, picked.index);
-      return;
-    }
-    const side = sideOf(picked, this.#of.results());
-    if (side === null) {
+    const question = this.#question();
+    if (question === null) {
       this.begin();
+    } else if (question.about === "segment") {
+      await this.#askAboutSegment(question);
     } else {
-      await this.#askAboutSide(side.line, side.side);
+      await this.#askAboutSide(question);
     }
   }
 
@@ -49,13 +49,14 @@ export class Inquiry {
   async compareAt(candidate: number, at: number, isMoved = this.#of.detail().isMoved): Promise<void> {
     this.#change({ candidate, at, isMoved });
     const picked = this.#of.selection();
+    const question = this.#question();
     const found = this.#of.detail().story?.candidates[candidate];
-    if (picked?.kind !== "segment" || found === undefined) {
+    if (question?.about !== "segment" || found === undefined) {
       this.#change({ correspondence: null });
       return;
     }
     await this.#latest("correspondence", async () => {
-      const { view, index } = picked;
+      const { view, index } = question;
       const answer = await this.#of.ask("correspondence", view, index, found.view, found.segment, at);
       if (this.#of.selection() === picked) {
         this.#change({ correspondence: answer });
@@ -79,29 +80,28 @@ export class Inquiry {
     });
   }
 
+  #question(): Question | null {
+    return questionOf(this.#of.selection(), this.#of.results());
+  }
+
   #change(part: Partial<SelectionDetail>): void {
     this.#of.setDetail({ ...this.#of.detail(), ...part });
   }
 
-  async #askAboutSegment(view: number, segment: number): Promise<void> {
-    const isMatched = this.#of.results().matching !== null;
-    const story = isMatched ? await this.#of.ask("segmentStory", view, segment) : null;
-    const now = this.#of.selection();
-    if (now?.kind === "segment" && now.view === view && now.index === segment) {
+  async #askAboutSegment({ view, index }: Extract<Question, { about: "segment" }>): Promise<void> {
+    const story = await this.#of.ask("segmentStory", view, index);
+    const now = this.#question();
+    if (now?.about === "segment" && now.view === view && now.index === index) {
       this.begin({ story });
       const point = story === null ? null : this.#of.takeResumed().point;
       await this.compareAt(point?.[0] ?? 0, point?.[1] ?? NO_DETAIL.at, point !== null);
     }
   }
 
-  async #askAboutSide(line: number, side: Side): Promise<void> {
-    if (this.#of.results().halfPlanes === null) {
-      this.begin();
-      return;
-    }
+  async #askAboutSide({ line, side }: Extract<Question, { about: "side" }>): Promise<void> {
     const found = await this.#of.ask("side", line, side === "left");
-    const now = sideOf(this.#of.selection(), this.#of.results());
-    if (now?.line === line && now.side === side) {
+    const now = this.#question();
+    if (now?.about === "side" && now.line === line && now.side === side) {
       const best = bestTheta(found, this.#of.results());
       this.begin({ side: found, theta: best });
       const thetaDeg = found === null ? null : this.#of.takeResumed().thetaDeg;
@@ -126,29 +126,6 @@ export class Inquiry {
       this.#waiting.delete(kind);
       await this.#latest(kind, next);
     }
-  }
-}
-
-/** The side of a line that a selection means: a line's better half-plane, or its left side. */
-export function sideOf(
-  picked: Selection | null,
-  { halfPlanes }: Pick<Results, "halfPlanes">,
-): { line: number; side: Side } | null {
-  switch (picked?.kind) {
-    case "side":
-      return picked;
-    case "halfplane":
-      return halfPlanes?.[picked.index] ?? null;
-    case "line": {
-      const own = halfPlanes?.filter(({ line }) => line === picked.index) ?? [];
-      const best = own.reduce<(typeof own)[number] | null>(
-        (a, b) => (a !== null && a.similarity >= b.similarity ? a : b),
-        null,
-      );
-      return { line: picked.index, side: best?.side ?? "left" };
-    }
-    default:
-      return null;
   }
 }
 

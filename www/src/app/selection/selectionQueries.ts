@@ -1,5 +1,6 @@
 /** The page's selection: asks the core about what was picked, and makes the page's state a figure. */
 import { effect } from "@preact/signals";
+import { questionOf } from "../../kinds/kinds";
 import { type Figure, type FigureActions, NO_DETAIL } from "../../shared/figure";
 import { actions, ask, hasResults } from "../session/session";
 import { runAll } from "../session/stageRuns";
@@ -10,7 +11,7 @@ import { images, scene } from "../state/scene";
 import { selectionDetail, setDetail, takeResumed } from "../state/selectionDetail";
 import { runningStage } from "../state/stages";
 import { select, selection, shownPlane, shownView, showPlane, showTab, showView } from "../state/viewState";
-import { Inquiry, sideOf } from "./inquiry";
+import { Inquiry } from "./inquiry";
 
 const inquiry = new Inquiry({
   selection: () => selection.peek(),
@@ -40,10 +41,7 @@ export function askAboutSelection(): void {
       setDetail(NO_DETAIL);
       return;
     }
-    const { matching, halfPlanes } = results.peek();
-    const isAboutRun =
-      picked?.kind === "segment" ? matching !== null : sideOf(picked, results.peek()) && halfPlanes !== null;
-    if (isAboutRun) {
+    if (questionOf(picked, results.peek()) !== null) {
       offerRun();
     }
     void inquiry.follow();

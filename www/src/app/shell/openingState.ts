@@ -1,5 +1,7 @@
 /** What the page begins with: the scene of a link, or the project of the last visit. */
 import { batch } from "@preact/signals";
+import { asksCore } from "../../kinds/kinds";
+import { lineEnds } from "../../kinds/parts/shapes";
 import type { Selection } from "../../shared/selection";
 import type { StageName } from "../../shared/stages";
 import { openDemoIn, restoreIn } from "../project/projectActions";
@@ -10,7 +12,6 @@ import {
   type StoredProject,
 } from "../project/storedProject";
 import { showStoredResults } from "../project/storedResults";
-import { lineEnds } from "../selection/selectionShapes";
 import type { Turn } from "../session/actionQueue";
 import { actions } from "../session/session";
 import { runStages } from "../session/stageRuns";
@@ -111,11 +112,6 @@ function offerLocked(stored: LockedProject): void {
 function isReload(): boolean {
   const [visit] = performance.getEntriesByType("navigation") as PerformanceNavigationTiming[];
   return visit !== undefined && visit.type !== "navigate";
-}
-
-/** Does the figure of the selected thing ask the core, which must have run then? */
-function asksCore(picked: Selection | null): boolean {
-  return picked !== null && ["segment", "line", "side", "halfplane"].includes(picked.kind);
 }
 
 /** Is there something of this stage to be seen? */

@@ -1,6 +1,8 @@
 /** The layers of the 3D view, from the results: each is built anew when what it shows has changed, in a task of its own. */
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Vector3 } from "three";
+import { linesOf, shapesOf } from "../../kinds/kinds";
+import { lineEnds } from "../../kinds/parts/shapes";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { Facet, GroupingTrace, Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
@@ -20,7 +22,6 @@ import { buildStretches } from "../../viewer/layers/stretches";
 import { buildUncertainty, enlargement } from "../../viewer/layers/uncertainty";
 import { type Layer, unpicked } from "../../viewer/scene/layer";
 import type { Viewer } from "../../viewer/viewer";
-import { lineEnds, linesOfSelection, shapesOf } from "../selection/selectionShapes";
 import { keptResult } from "../state/keptResult";
 import type { Tab } from "../state/methods";
 import { preliminaryFacets, results } from "../state/results";
@@ -78,7 +79,7 @@ export function toggleLayer(name: LayerName, inTab: Tab): void {
 type Plan = readonly [build: () => Layer, ...of: unknown[]] | null;
 
 /** The 3D lines of a selection, in the results of now. */
-const ownLines = (picked: Selection | null) => linesOfSelection(picked, results.peek());
+const ownLines = (picked: Selection | null) => linesOf(picked, results.peek());
 
 /** What every layer shows now. `middle` is where cameras look at, local frame. */
 const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
@@ -134,13 +135,7 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   },
   picked: () => {
     const shapes = shapesOf(selection.value, results.value).filter(({ role }) => role !== "before");
-    const areas = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
-    // A segment is in no place of space, but its line is.
-    const lines =
-      selection.value?.kind === "segment"
-        ? ownLines(selection.value).map((line) => lineEnds(line, results.value))
-        : [];
-    const all = [...areas, ...lines.map((points) => ({ points, closed: false }))];
+    const all = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
     return all.length === 0 ? null : [() => buildHighlight(all), selection.value, results.value];
   },
   turning: () => {

@@ -1,10 +1,11 @@
 /** Edges that are drawn in the photographs, and the lines that were found for them. */
+
+import { type Mark, project } from "../../kinds/parts/marks";
 import type { Figure } from "../../shared/figure";
 import { PALETTE } from "../../shared/palette";
 import type { Vec2 } from "../../shared/records";
 import { drawEdge, edgeStart, isDrawingEdge, takeEdgeEnd } from "../corrections/edgeDrawing";
 import type { PlaceTool } from "../images/ImageViews";
-import { type Mark, project } from "../images/selectionMarks";
 
 const START_PX = 3;
 

@@ -23,23 +23,6 @@ describe("links", () => {
   });
 
   it.each([
-    { kind: "segment", view: 0, index: 44 },
-    { kind: "region", view: 3, index: 1 },
-    { kind: "rejectedSegment", view: 2, index: 9 },
-    { kind: "rejectedFacet", index: 4 },
-    { kind: "cluster", plane: 1, index: 12 },
-    { kind: "line", index: 7 },
-    { kind: "facet", index: 0 },
-    { kind: "footprint", index: 3 },
-    { kind: "group", index: 9 },
-    { kind: "pair", index: 5 },
-    { kind: "refinement", index: 2 },
-    { kind: "relation", building: 2, index: 11 },
-  ] as const)("carry a selection: $kind", (selection) => {
-    expect(parseLink(formatLink({ ...LINK, selection })).selection).toEqual(selection);
-  });
-
-  it.each([
     "tab=<script>",
     "select=line:-1",
     "select=line:1e9",

@@ -1,16 +1,14 @@
 /** What the page says of adjacency graphs: corners of an image, corners in space, and the planes that these propose. */
 import { afterEach, describe, expect, it } from "vitest";
 import { cornerAt, graphOverlay } from "../../../src/app/images/graphOverlay";
-import { planesOfCorner } from "../../../src/app/inspector/cornerRows";
-import type { Related, Row } from "../../../src/app/inspector/rowLinks";
-import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
-import { siblingsOf } from "../../../src/app/inspector/siblings";
 import { presentEntries } from "../../../src/app/parts/Legend";
-import { shapesOf } from "../../../src/app/selection/selectionShapes";
 import { TABS } from "../../../src/app/state/methods";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
 import { cornerParts } from "../../../src/app/tour/examples";
+import { rowsOf, shapesOf, siblingsOf, titleOf } from "../../../src/kinds/kinds";
+import type { Related, Row } from "../../../src/kinds/parts/rows";
+import { planesOfCorner } from "../../../src/kinds/planes/corner";
 import {
   type AdjacencyGraphs,
   type CornerPlane,
@@ -22,7 +20,7 @@ import {
   type SpaceCorner,
   type SpaceEdge,
 } from "../../../src/shared/records";
-import { formatSelection, parseSelection } from "../../../src/shared/selection";
+import { about } from "../kinds/about";
 
 const edgeInImage = (far: [number, number], direction: [number, number], region: number) => ({
   segment: 0,
@@ -185,21 +183,20 @@ describe("the graph over an image", () => {
 describe("a corner in space", () => {
   it("is told with its nats, its neighbours and its planes", () => {
     show();
-    expect(titleOf({ kind: "corner", index: 0 })).toBe("Corner 0");
-    const rows = rowsOf({ kind: "corner", index: 0 });
+    expect(titleOf({ kind: "corner", index: 0 }, about(results.value))).toBe("Corner 0");
+    const rows = rowsOf({ kind: "corner", index: 0 }, about(results.value));
     expect(valueIn(rows, "Seen in")).toBe("3 views");
     expect(barsIn(rows, "For and against it (nats)")).toEqual([9, 10, -1]);
-    expect(planesOfCorner(0)).toEqual([0, 1, 2]);
+    expect(planesOfCorner(0, { adjacency: ADJACENCY })).toEqual([0, 1, 2]);
     expect(barsIn(rows, "Views agree inside (nats)")).toEqual([6, 8]);
     const names = (label: string) => (valueIn(rows, label) as Related[]).map(({ name }) => name);
     expect(names("Joined by an edge")).toEqual(["1"]);
     expect(names("Facets")).toEqual(["0"]);
-    expect(rowsOf({ kind: "corner", index: 9 })).toEqual([]);
-    expect(valueIn(rowsOf({ kind: "facet", index: 0 }), "Proposed by corners")).toMatchObject([
-      { name: "0" },
-      { name: "1" },
-    ]);
-    expect(siblingsOf({ kind: "corner", index: 0 })).toHaveLength(2);
+    expect(rowsOf({ kind: "corner", index: 9 }, about(results.value))).toEqual([]);
+    expect(
+      valueIn(rowsOf({ kind: "facet", index: 0 }, about(results.value)), "Proposed by corners"),
+    ).toMatchObject([{ name: "0" }, { name: "1" }]);
+    expect(siblingsOf({ kind: "corner", index: 0 }, "adjacency", about(results.value))).toHaveLength(2);
   });
 
   it("lights up with its verified planes and its edges, which lead to its neighbours", () => {
@@ -214,9 +211,7 @@ describe("a corner in space", () => {
     expect(shapesOf({ kind: "corner", index: 9 }, results.value)).toEqual([]);
   });
 
-  it("is named in links, and proposes planes", () => {
-    const picked = { kind: "corner" as const, index: 3 };
-    expect(parseSelection(formatSelection(picked))).toEqual(picked);
+  it("proposes planes", () => {
     expect(cornerPlanesOf(FACET)).toEqual([2]);
     expect(isMadeFrom(FACET, { members: [], proposals: [{ corner_plane: 2 }] })).toBe(true);
     expect(isMadeFrom(FACET, { members: [], proposals: [{ corner_plane: 1 }] })).toBe(false);

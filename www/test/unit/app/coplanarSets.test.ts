@@ -1,14 +1,13 @@
 /** What the page says of sets of coplanar lines, and of what they proposed. */
 import { afterEach, describe, expect, it } from "vitest";
-import type { Related, Row } from "../../../src/app/inspector/rowLinks";
-import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
 import { presentEntries } from "../../../src/app/parts/Legend";
 import { setAt, shownSets } from "../../../src/app/selection/coplanarPlan";
-import { linesOfSelection, shapesOf } from "../../../src/app/selection/selectionShapes";
 import { TABS } from "../../../src/app/state/methods";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
 import { coplanarSetParts } from "../../../src/app/tour/examples";
+import { linesOf, rowsOf, shapesOf, titleOf } from "../../../src/kinds/kinds";
+import type { Related, Row } from "../../../src/kinds/parts/rows";
 import {
   type CoplanarSet,
   type CoplanarSets,
@@ -18,7 +17,7 @@ import {
   isMadeFrom,
   isRejected,
 } from "../../../src/shared/records";
-import { formatSelection, parseSelection } from "../../../src/shared/selection";
+import { about } from "../kinds/about";
 
 const square = (x: number, side: number): CoplanarSet["polygon"] => [
   [x, 0, 5],
@@ -104,8 +103,8 @@ const barsIn = (rows: readonly Row[], label: string) => {
 describe("sets of coplanar lines", () => {
   it("are told with their nats, their relations and what became of them", () => {
     show();
-    expect(titleOf({ kind: "coplanar", index: 0 })).toBe("Coplanar set 0");
-    const rows = rowsOf({ kind: "coplanar", index: 0 });
+    expect(titleOf({ kind: "coplanar", index: 0 }, about(results.value))).toBe("Coplanar set 0");
+    const rows = rowsOf({ kind: "coplanar", index: 0 }, about(results.value));
     expect(valueIn(rows, "Verified")).toBe("yes");
     expect(barsIn(rows, "For and against it (nats)")).toEqual([4, 30, -12]);
     expect(barsIn(rows, "Sides without a line (nats)")).toEqual([1.5]);
@@ -114,9 +113,11 @@ describe("sets of coplanar lines", () => {
     const names = (label: string) => (valueIn(rows, label) as Related[]).map(({ name }) => name);
     expect(names("3D lines")).toEqual(["3", "4"]);
     expect(names("Facets")).toEqual(["0"]);
-    expect(valueIn(rowsOf({ kind: "coplanar", index: 1 }), "Verified")).toBe("no");
-    expect(rowsOf({ kind: "coplanar", index: 9 })).toEqual([]);
-    expect(valueIn(rowsOf({ kind: "facet", index: 0 }), "Coplanar sets")).toMatchObject([{ name: "0" }]);
+    expect(valueIn(rowsOf({ kind: "coplanar", index: 1 }, about(results.value)), "Verified")).toBe("no");
+    expect(rowsOf({ kind: "coplanar", index: 9 }, about(results.value))).toEqual([]);
+    expect(valueIn(rowsOf({ kind: "facet", index: 0 }, about(results.value)), "Coplanar sets")).toMatchObject(
+      [{ name: "0" }],
+    );
   });
 
   it("light up with the hull that was there before", () => {
@@ -124,7 +125,7 @@ describe("sets of coplanar lines", () => {
     const shapes = shapesOf({ kind: "coplanar", index: 0 }, results.value);
     expect(shapes.map(({ role }) => role)).toEqual(["before", "area"]);
     expect(shapes[1]?.points).toEqual(square(0, 4));
-    expect(linesOfSelection({ kind: "coplanar", index: 0 }, results.value)).toEqual([3, 4]);
+    expect(linesOf({ kind: "coplanar", index: 0 }, results.value)).toEqual([3, 4]);
     expect(shapesOf({ kind: "coplanar", index: 9 }, results.value)).toEqual([]);
   });
 
@@ -136,11 +137,7 @@ describe("sets of coplanar lines", () => {
     expect(setAt(COPLANAR, [9, 1])).toBeNull();
   });
 
-  it("are named in links, and propose planes", () => {
-    expect(parseSelection(formatSelection({ kind: "coplanar", index: 3 }))).toEqual({
-      kind: "coplanar",
-      index: 3,
-    });
+  it("propose planes", () => {
     expect(coplanarSetsOf(FACET)).toEqual([0]);
     expect(isMadeFrom(FACET, { members: [], proposals: [{ coplanar_set: 0 }] })).toBe(true);
     expect(isMadeFrom(FACET, { members: [], proposals: [{ coplanar_set: 1 }] })).toBe(false);

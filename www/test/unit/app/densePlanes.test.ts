@@ -1,15 +1,13 @@
 /** What the page says of the planes of dense matching, and of what they proposed. */
 import { afterEach, describe, expect, it } from "vitest";
-import { slopeSigma } from "../../../src/app/inspector/densePlaneRows";
-import type { Related, Row } from "../../../src/app/inspector/rowLinks";
-import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
 import { frameOf } from "../../../src/app/parts/charts";
 import { presentEntries } from "../../../src/app/parts/Legend";
 import { areasOf, equalScales, planeAt, squaresAt } from "../../../src/app/selection/densePlan";
-import { shapesOf } from "../../../src/app/selection/selectionShapes";
 import { methodOfFacet } from "../../../src/app/space/ModelModes";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
+import { rowsOf, shapesOf, titleOf } from "../../../src/kinds/kinds";
+import type { Related, Row } from "../../../src/kinds/parts/rows";
 import {
   type DensePlane,
   type DensePlanes,
@@ -19,7 +17,9 @@ import {
   isMadeFrom,
   rectanglesOf,
 } from "../../../src/shared/records";
-import { formatSelection, parseSelection } from "../../../src/shared/selection";
+import { formatSelection } from "../../../src/shared/selection";
+import { slopeSigma } from "../../../src/shared/surfaceClass";
+import { about } from "../kinds/about";
 
 const RING: DensePlane["ring"] = [
   [0, 0, 5],
@@ -129,8 +129,8 @@ describe("proposals", () => {
 describe("the inspector", () => {
   it("says of a dense plane what it is, how sure its place is, and what it proposed", () => {
     show();
-    const rows = rowsOf({ kind: "dense", index: 0 });
-    expect(titleOf({ kind: "dense", index: 0 })).toBe("Dense plane 0");
+    const rows = rowsOf({ kind: "dense", index: 0 }, about(results.value));
+    expect(titleOf({ kind: "dense", index: 0 }, about(results.value))).toBe("Dense plane 0");
     expect(valueIn(rows, "It is")).toBe("building 97 %, ground 2 %, vegetation 1 %");
     expect(valueIn(rows, "σ of its height")).toBe("2.0 cm");
     expect(valueIn(rows, "RMS of its patches")).toBe("3.4 cm");
@@ -143,15 +143,21 @@ describe("the inspector", () => {
     });
     expect(linked(rows, "Groups")).toEqual(["group:0"]);
     expect(linked(rows, "Facets")).toEqual(["facet:0"]);
-    expect(linked(rowsOf({ kind: "dense", index: 1 }), "Facets")).toEqual([]);
-    expect(rowsOf({ kind: "dense", index: 9 })).toEqual([]);
+    expect(linked(rowsOf({ kind: "dense", index: 1 }, about(results.value)), "Facets")).toEqual([]);
+    expect(rowsOf({ kind: "dense", index: 9 }, about(results.value))).toEqual([]);
   });
 
   it("leads from groups and facets to their dense planes", () => {
     show();
-    expect(linked(rowsOf({ kind: "group", index: 0 }), "Dense planes")).toEqual(["dense:0"]);
-    expect(linked(rowsOf({ kind: "facet", index: 0 }), "Dense planes")).toEqual(["dense:0"]);
-    expect(valueIn(rowsOf({ kind: "group", index: 1 }), "Dense planes")).toBeUndefined();
+    expect(linked(rowsOf({ kind: "group", index: 0 }, about(results.value)), "Dense planes")).toEqual([
+      "dense:0",
+    ]);
+    expect(linked(rowsOf({ kind: "facet", index: 0 }, about(results.value)), "Dense planes")).toEqual([
+      "dense:0",
+    ]);
+    expect(
+      valueIn(rowsOf({ kind: "group", index: 1 }, about(results.value)), "Dense planes"),
+    ).toBeUndefined();
   });
 
   it("has the slope's deviation along the slope", () => {
@@ -175,12 +181,11 @@ describe("the inspector", () => {
   });
 });
 
-it("a dense plane is shown by its ring, as is a group that no line made; a link names it", () => {
+it("a dense plane is shown by its ring, as is a group that no line made", () => {
   show();
   const area = [{ points: RING, role: "area" }];
   expect(shapesOf({ kind: "dense", index: 0 }, results.value)).toEqual(area);
   expect(shapesOf({ kind: "group", index: 0 }, results.value)).toEqual(area);
-  expect(parseSelection(formatSelection({ kind: "dense", index: 12 }))).toEqual({ kind: "dense", index: 12 });
 });
 
 it("the legend names the classes that there are", () => {

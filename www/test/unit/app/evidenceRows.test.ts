@@ -1,12 +1,13 @@
 import { afterEach, describe, expect, it } from "vitest";
-import { evidenceRow } from "../../../src/app/inspector/evidenceRows";
-import type { Bars, Row } from "../../../src/app/inspector/rowLinks";
-import { rowsOf } from "../../../src/app/inspector/selectionRows";
 import { presentEntries } from "../../../src/app/parts/Legend";
 import { facetRejectionWords } from "../../../src/app/parts/reasonText";
-import { NO_RESULTS, type Results, restoreResults } from "../../../src/app/state/results";
+import { NO_RESULTS, type Results, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
+import { rowsOf } from "../../../src/kinds/kinds";
+import { evidenceRow } from "../../../src/kinds/parts/evidenceRows";
+import type { Bars, Row } from "../../../src/kinds/parts/rows";
 import type { Evidence, Facet, FacetTrace, LineRecord } from "../../../src/shared/records";
+import { about } from "../kinds/about";
 
 const evidence = (prior: number, terms: Record<string, [value: number, nats: number]>): Evidence => ({
   prior,
@@ -49,7 +50,7 @@ const valueIn = (rows: readonly Row[], label: string) => rows.find(([name]) => n
 
 const lineRows = (of: Partial<LineRecord>) => {
   show({ lines: Float64Array.of(0, 0, 0, 1, 0, 0), records: [line(of)] });
-  return rowsOf({ kind: "line", index: 0 });
+  return rowsOf({ kind: "line", index: 0 }, about(results.value));
 };
 
 afterEach(() => {
@@ -86,8 +87,10 @@ describe("the rows of a line", () => {
     expect(valueIn(lineRows({ probability: 1 }), "Probability")).toBe("–");
     expect(valueIn(lineRows({ probability: 0.998, by_views: BY_VIEWS }), "Probability")).toBe("> 99 %");
     show({ lines: Float64Array.of(0, 0, 0, 1, 0, 0), records: [old as LineRecord] });
-    expect(rowsOf({ kind: "line", index: 0 }).filter(([name]) => name.startsWith("For"))).toEqual([]);
-    expect(evidenceRow("any", undefined)).toEqual([]);
+    expect(
+      rowsOf({ kind: "line", index: 0 }, about(results.value)).filter(([name]) => name.startsWith("For")),
+    ).toEqual([]);
+    expect(evidenceRow("any", undefined)).toBeNull();
   });
 
   it("say why the model contradicts it", () => {
@@ -99,8 +102,8 @@ describe("the rows of a line", () => {
 
 it("a facet has its probability, unless nothing weighed it", () => {
   show({ facets: [facet(0.87), facet(1)] });
-  expect(valueIn(rowsOf({ kind: "facet", index: 0 }), "Probability")).toBe("87 %");
-  expect(valueIn(rowsOf({ kind: "facet", index: 1 }), "Probability")).toBe("–");
+  expect(valueIn(rowsOf({ kind: "facet", index: 0 }, about(results.value)), "Probability")).toBe("87 %");
+  expect(valueIn(rowsOf({ kind: "facet", index: 1 }, about(results.value)), "Probability")).toBe("–");
 });
 
 it("a rejected facet says in short why, and in bars all that was weighed", () => {
@@ -109,7 +112,7 @@ it("a rejected facet says in short why, and in bars all that was weighed", () =>
   show({ verification });
   const words = facetRejectionWords(reason);
   expect(words).toBe("more likely no roof (probability 12 %); most against it: excess green (−1.7 nats)");
-  const rows = rowsOf({ kind: "rejectedFacet", index: 0 });
+  const rows = rowsOf({ kind: "rejectedFacet", index: 0 }, about(results.value));
   expect(valueIn(rows, "Rejected")).toBe(words);
   const { bars } = valueIn(rows, "For and against it (nats)") as Bars;
   expect(bars.map(({ nats }) => nats)).toEqual([-1, -1.67, 0.9, -0.25]);

@@ -1,6 +1,6 @@
 import { type Intersection, type LineSegments, Vector3, Vector4 } from "three";
 import { describe, expect, it } from "vitest";
-import { project } from "../../../src/app/images/selectionMarks";
+import { project } from "../../../src/kinds/parts/marks";
 import type { Vec3, ViewInfo } from "../../../src/shared/records";
 import { buildFans, buildTurning, fanCorners } from "../../../src/viewer/layers/fans";
 import { yUp } from "../../../src/viewer/scene/frame";

@@ -1,0 +1,76 @@
+//! Why an input is refused: which file, which line, what was expected, what to do.
+
+use crate::base::agreement::AgreementReport;
+
+/// A refusal. Every message names the file and says what to do.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// A line of a text file does not follow the format.
+    #[error("{}, line {line}: {}; expected {expected}", one_line(.file), one_line(.problem))]
+    Line {
+        /// File name.
+        file: String,
+        /// Line number, from 1.
+        line: usize,
+        /// What the line says.
+        problem: String,
+        /// What it should say.
+        expected: String,
+    },
+    /// A file as a whole cannot be used.
+    #[error("{}: {}; {}", one_line(.file), one_line(.problem), one_line(.advice))]
+    File {
+        /// File name.
+        file: String,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        advice: String,
+    },
+    /// The files do not make a scene.
+    #[error("{}; {}", one_line(.problem), one_line(.advice))]
+    Scene {
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        advice: String,
+    },
+    /// The images contradict their orientation.
+    #[error("{}; {}", one_line(.problem), one_line(.advice))]
+    Contradiction {
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        advice: String,
+        /// The report of the orientation check.
+        report: Box<AgreementReport>,
+    },
+}
+
+impl Error {
+    /// The kind of refusal, for programs.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Line { .. } => "line",
+            Self::File { .. } => "file",
+            Self::Scene { .. } => "scene",
+            Self::Contradiction { .. } => "contradiction",
+        }
+    }
+}
+
+/// Names and contents of files may hold anything: control characters become blanks, long texts are
+/// shortened.
+fn one_line(text: &str) -> String {
+    const MOST: usize = 600;
+    let mut line: String = (text.chars().take(MOST))
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    if line.len() < text.len() {
+        line.push_str("...");
+    }
+    line
+}
+
+/// Result of reading.
+pub type Result<T> = std::result::Result<T, Error>;

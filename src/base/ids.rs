@@ -1,0 +1,56 @@
+//! Newtypes for the things that stages refer to by index.
+
+use serde::{Deserialize, Serialize};
+
+macro_rules! id {
+    ($(#[$doc:meta] $name:ident),* $(,)?) => {$(
+        #[$doc]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[serde(transparent)]
+        pub struct $name(pub u32);
+
+        impl $name {
+            /// The position in the vector that this id refers to.
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+
+            /// The id of the element at `index`.
+            pub fn from_index(index: usize) -> Self {
+                Self(u32::try_from(index).expect("fewer than 2^32 elements"))
+            }
+        }
+    )*};
+}
+
+id! {
+    /// A view: index into [`crate::orienting::scene::Scene::views`].
+    ViewId,
+    /// An image segment: index into the segments of its own view.
+    SegmentId,
+    /// A reconstructed 3D line: index into the list of 3D lines.
+    LineId,
+    /// An accepted half-plane: index into the list of half-planes.
+    HalfPlaneId,
+    /// A roof facet: index into [`crate::roofs::model::RoofModel::facets`].
+    FacetId,
+    /// A building: index into [`crate::roofs::model::RoofModel::buildings`].
+    BuildingId,
+}
+
+/// What proposed a plane, beside the half-planes and lines of B99.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+#[serde(rename_all = "snake_case")]
+pub enum ProposalOrigin {
+    /// A candidate of W96: index into the candidates of [`crate::planes::objectspace::RectangleTrace`].
+    Rectangle(u32),
+    /// A plane of dense matching: index into the list of [`crate::planes::dense::DensePlane`].
+    DensePlane(u32),
+    /// A set of coplanar lines: index into the list of [`crate::planes::coplanar::CoplanarSet`].
+    CoplanarSet(u32),
+    /// A plane of corners: index into the list of [`crate::planes::adjacency::CornerPlane`].
+    CornerPlane(u32),
+    /// A plane of a point cloud: index into the list of [`crate::planes::dense::CloudComparison`].
+    CloudPlane(u32),
+}

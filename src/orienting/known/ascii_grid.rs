@@ -1,0 +1,146 @@
+//! ASCII grid of ESRI: a header of names and numbers, then the heights row by row from the north.
+//!
+//! ```text
+//! ncols 200            nrows 100
+//! xllcorner 432000     yllcorner 5412000      or xllcenter, yllcenter
+//! cellsize 1           or dx, dy              NODATA_value -9999   (may be missing)
+//! 147.1 147.2 ...
+//! ```
+
+use super::height_grid::HeightGrid;
+use super::refusal::refusal;
+use crate::base::error::{Error, Result};
+use crate::orienting::orientation::InputFile;
+
+/// Does a file begin as such a grid does?
+pub(super) fn is_ascii_grid(file: &InputFile) -> bool {
+    let head = file.start_as_text(64);
+    head.is_some_and(|text| text.trim_start().to_ascii_lowercase().starts_with("ncols"))
+}
+
+/// What the header states.
+#[derive(Default)]
+struct Header {
+    columns: Option<f64>,
+    rows: Option<f64>,
+    /// West and south, and whether of the centre of a cell rather than its corner.
+    x: Option<(f64, bool)>,
+    y: Option<(f64, bool)>,
+    cell: [Option<f64>; 2],
+    no_data: Option<f64>,
+}
+
+impl Header {
+    /// Takes an entry; `None` where it is of no header.
+    fn take(&mut self, name: &str, value: f64) -> Option<()> {
+        match name.to_ascii_lowercase().as_str() {
+            "ncols" => self.columns = Some(value),
+            "nrows" => self.rows = Some(value),
+            "xllcorner" => self.x = Some((value, false)),
+            "xllcenter" => self.x = Some((value, true)),
+            "yllcorner" => self.y = Some((value, false)),
+            "yllcenter" => self.y = Some((value, true)),
+            "cellsize" => self.cell = [Some(value); 2],
+            "dx" => self.cell[0] = Some(value),
+            "dy" => self.cell[1] = Some(value),
+            "nodata_value" => self.no_data = Some(value),
+            _ => return None,
+        }
+        Some(())
+    }
+}
+
+pub(super) fn read(file: &InputFile) -> Result<HeightGrid> {
+    let text = file.text();
+    let refuse = |line: usize, problem: String, expected: &str| Error::Line {
+        file: file.path.clone(),
+        line,
+        problem,
+        expected: expected.to_owned(),
+    };
+    let mut header = Header::default();
+    let mut lines = text.lines().enumerate().peekable();
+    while let Some((i, line)) = lines.peek().copied() {
+        let mut words = line.split_whitespace();
+        let Some(name) = words.next() else {
+            lines.next();
+            continue;
+        };
+        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || name.eq_ignore_ascii_case("nan")
+        {
+            break;
+        }
+        let value = words.next().and_then(|word| word.parse().ok());
+        let value: f64 = value.ok_or_else(|| {
+            refuse(
+                i + 1,
+                format!("'{name}' has no number"),
+                "a name and a number",
+            )
+        })?;
+        header.take(name, value).ok_or_else(|| {
+            let expected = "ncols, nrows, xllcorner, yllcorner, cellsize or NODATA_value";
+            refuse(
+                i + 1,
+                format!("'{name}' is no part of the header"),
+                expected,
+            )
+        })?;
+        lines.next();
+    }
+    let missing = |name: &str| {
+        refuse(
+            1,
+            format!("the header states no {name}"),
+            "the header of an ASCII grid",
+        )
+    };
+    let count = |stated: Option<f64>, name: &str| {
+        let count = stated.ok_or_else(|| missing(name))?;
+        let is_count = (2.0..1e6).contains(&count) && count.fract() == 0.0;
+        is_count
+            .then_some(count as usize)
+            .ok_or_else(|| refuse(1, format!("{name} is {count}"), "a whole number from 2"))
+    };
+    let (columns, rows) = (
+        count(header.columns, "ncols")?,
+        count(header.rows, "nrows")?,
+    );
+    let cell = [
+        header.cell[0].ok_or_else(|| missing("cellsize"))?,
+        header.cell[1].ok_or_else(|| missing("cellsize"))?,
+    ];
+    let (x, x_is_center) = header.x.ok_or_else(|| missing("xllcorner"))?;
+    let (y, y_is_center) = header.y.ok_or_else(|| missing("yllcorner"))?;
+    let wanted = columns * rows;
+    let last = text.lines().count();
+    let expected = "one height for every cell";
+    let mut heights: Vec<f32> = Vec::new();
+    for (i, line) in lines {
+        for word in line.split_whitespace() {
+            let z = word.parse().map_err(|_| {
+                let problem = format!("'{word}' is no number");
+                refuse(i + 1, problem, "heights with a decimal point")
+            })?;
+            if heights.len() == wanted {
+                let problem = format!("there are more than {columns} x {rows} heights");
+                return Err(refuse(i + 1, problem, expected));
+            }
+            heights.push(z);
+        }
+    }
+    if heights.len() < wanted {
+        let problem = format!("the file ends after {} of {wanted} heights", heights.len());
+        return Err(refuse(last, problem, expected));
+    }
+    let corner =
+        |at: f64, is_center: bool, cell: f64| at + if is_center { 0.0 } else { 0.5 * cell };
+    let first = [
+        corner(x, x_is_center, cell[0]),
+        corner(y, y_is_center, cell[1]) + (rows - 1) as f64 * cell[1],
+    ];
+    // Heights are read as they are written: the value that stands for none as well.
+    let no_data = header.no_data.unwrap_or(-9999.0) as f32;
+    HeightGrid::new(first, cell, [columns, rows], heights, Some(no_data))
+        .map_err(|problem| refusal(&file.path, &problem, "give heights of the ground"))
+}

@@ -1,0 +1,238 @@
+//! nerfstudio's `transforms.json`.
+//!
+//! `transform_matrix` is `world_from_cam` with y up and z backwards (OpenGL); `applied_transform`
+//! rotated the world before, and `applied_scale` multiplied the positions then: both are undone.
+//! Intrinsics are stated once or per frame.
+
+use nalgebra::{Matrix3, Matrix4, Point3, Vector3};
+use serde::Deserialize;
+
+use super::{parse, refuse};
+use crate::base::error::{Error, Result};
+use crate::orienting::orientation::formats::left_out::LeftOut;
+use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
+use crate::photographs::camera::{Distortion, Projection};
+
+/// Reads nerfstudio's `transforms.json`.
+pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result<Vec<Orientation>> {
+    let file: NerfstudioTransforms = parse(path, text)?;
+    let undo = match &file.applied_transform {
+        None => Matrix4::identity(),
+        Some(rows) => homogeneous(rows)
+            .try_inverse()
+            .ok_or_else(|| refuse(path, "applied_transform is singular"))?,
+    };
+    let scale = file.applied_scale.unwrap_or(1.0);
+    if !(scale > 0.0 && scale.is_finite()) {
+        let problem = format!("applied_scale is {scale}, which is no factor of lengths");
+        return Err(refuse(path, &problem));
+    }
+    let (mut found, mut left_out) = (Vec::new(), LeftOut::default());
+    for frame in &file.frames {
+        let lens = frame.lens.or(&file.lens);
+        let k = match lens.k(path, &frame.file_path) {
+            Ok(k) => k,
+            Err(reason) => {
+                left_out.add(&frame.file_path, &reason);
+                continue;
+            }
+        };
+        let mut pose = homogeneous(&frame.transform_matrix);
+        // The positions were turned and moved first, then multiplied.
+        for i in 0..3 {
+            pose[(i, 3)] /= scale;
+        }
+        let pose = undo * pose;
+        let turned = pose.fixed_view::<3, 3>(0, 0).into_owned();
+        let axes = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
+        let r = axes * (turned / turned.column(0).norm()).transpose();
+        let center = Point3::new(pose[(0, 3)], pose[(1, 3)], pose[(2, 3)]);
+        found.push(Orientation {
+            distortion: lens.distortion(),
+            size: lens.w.zip(lens.h).map(|(w, h)| (w as u32, h as u32)),
+            ..pinhole(&frame.file_path, path, k, r, center)
+        });
+    }
+    left_out.finish(found, warnings)
+}
+
+#[derive(Deserialize)]
+struct NerfstudioTransforms {
+    #[serde(flatten)]
+    lens: NerfstudioCamera,
+    applied_transform: Option<Vec<[f64; 4]>>,
+    applied_scale: Option<f64>,
+    frames: Vec<NerfstudioFrame>,
+}
+
+#[derive(Deserialize)]
+struct NerfstudioFrame {
+    file_path: String,
+    transform_matrix: Vec<[f64; 4]>,
+    #[serde(flatten)]
+    lens: NerfstudioCamera,
+}
+
+#[derive(Clone, Deserialize)]
+struct NerfstudioCamera {
+    camera_model: Option<String>,
+    is_fisheye: Option<bool>,
+    camera_angle_x: Option<f64>,
+    camera_angle_y: Option<f64>,
+    fl_x: Option<f64>,
+    fl_y: Option<f64>,
+    cx: Option<f64>,
+    cy: Option<f64>,
+    w: Option<f64>,
+    h: Option<f64>,
+    k1: Option<f64>,
+    k2: Option<f64>,
+    k3: Option<f64>,
+    k4: Option<f64>,
+    p1: Option<f64>,
+    p2: Option<f64>,
+}
+
+impl NerfstudioCamera {
+    /// What a frame leaves out is stated once for all frames.
+    fn or(&self, all: &Self) -> Self {
+        Self {
+            camera_model: self
+                .camera_model
+                .clone()
+                .or_else(|| all.camera_model.clone()),
+            is_fisheye: self.is_fisheye.or(all.is_fisheye),
+            camera_angle_x: self.camera_angle_x.or(all.camera_angle_x),
+            camera_angle_y: self.camera_angle_y.or(all.camera_angle_y),
+            fl_x: self.fl_x.or(all.fl_x),
+            fl_y: self.fl_y.or(all.fl_y),
+            cx: self.cx.or(all.cx),
+            cy: self.cy.or(all.cy),
+            w: self.w.or(all.w),
+            h: self.h.or(all.h),
+            k1: self.k1.or(all.k1),
+            k2: self.k2.or(all.k2),
+            k3: self.k3.or(all.k3),
+            k4: self.k4.or(all.k4),
+            p1: self.p1.or(all.p1),
+            p2: self.p2.or(all.p2),
+        }
+    }
+
+    fn k(&self, path: &str, image: &str) -> Result<Matrix3<f64>> {
+        const PERSPECTIVE: [&str; 6] = [
+            "SIMPLE_PINHOLE",
+            "PINHOLE",
+            "SIMPLE_RADIAL",
+            "RADIAL",
+            "OPENCV",
+            "PERSPECTIVE",
+        ];
+        let model = self.camera_model.as_deref().unwrap_or("PINHOLE");
+        let is_fisheye = self.is_fisheye();
+        if !is_fisheye && !PERSPECTIVE.contains(&&*model.to_ascii_uppercase()) {
+            return Err(unsupported_model(path, image, model));
+        }
+        if is_fisheye && [self.p1, self.p2].iter().any(|p| p.unwrap_or(0.0) != 0.0) {
+            return Err(unsupported_model(path, image, "fisheye with p1 and p2"));
+        }
+        let of_angle = |angle: Option<f64>, size: Option<f64>| {
+            // The angle of a fisheye says nothing of its focal length.
+            let (angle, size) = angle.filter(|_| !is_fisheye).zip(size)?;
+            let (s, c) = crate::base::math::sin_cos(angle / 2.0);
+            Some(size / 2.0 * c / s)
+        };
+        let of_angle_x = || of_angle(self.camera_angle_x, self.w);
+        let of_angle_y = || of_angle(self.camera_angle_y, self.h);
+        let fx = self.fl_x.or_else(of_angle_x);
+        let middle = |c: Option<f64>, size: Option<f64>| c.or(size.map(|s| s / 2.0));
+        let (Some(fx), Some(cx), Some(cy)) = (fx, middle(self.cx, self.w), middle(self.cy, self.h))
+        else {
+            let problem = format!("{image} lacks fl_x, cx, cy, or w and h");
+            return Err(refuse(path, &problem));
+        };
+        let fy = self.fl_y.or_else(of_angle_y).unwrap_or(fx);
+        Ok(Matrix3::new(fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0))
+    }
+
+    /// OpenCV's fisheye, as nerfstudio's model or instant-ngp's key.
+    fn is_fisheye(&self) -> bool {
+        let model = self.camera_model.as_deref();
+        self.is_fisheye == Some(true)
+            || model.is_some_and(|m| m.eq_ignore_ascii_case("OPENCV_FISHEYE"))
+    }
+
+    fn distortion(&self) -> Option<Distortion> {
+        let or_zero = |v: Option<f64>| v.unwrap_or(0.0);
+        let projection = match self.is_fisheye() {
+            true => Projection::Equidistant,
+            false => Projection::Perspective,
+        };
+        Distortion::lens(
+            projection,
+            [self.k1, self.k2, self.k3, self.k4].map(or_zero),
+            [self.p1, self.p2].map(or_zero),
+        )
+    }
+}
+
+fn unsupported_model(path: &str, image: &str, model: &str) -> Error {
+    refuse(
+        path,
+        &format!("{image} has the camera model \"{model}\", which is not read"),
+    )
+}
+
+/// Three rows or four of a 4 x 4 matrix; what is missing is that of the identity.
+fn homogeneous(rows: &[[f64; 4]]) -> Matrix4<f64> {
+    let identity = Matrix4::identity();
+    Matrix4::from_fn(|i, j| {
+        if i < 3 {
+            rows.get(i).map_or(f64::NAN, |r| r[j])
+        } else {
+            identity[(i, j)]
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::math;
+
+    #[test]
+    fn an_opencv_fisheye_puts_points_where_opencv_does() {
+        let k = [-0.03, 0.004, -0.002, 0.0006];
+        let file = |model: &str| {
+            format!(
+                "{{{model}, \"fl_x\": 300, \"fl_y\": 310, \"cx\": 320, \"cy\": 240, \"w\": 640, \"h\": 480, \"k1\": {}, \"k2\": {}, \
+                 \"k3\": {}, \"k4\": {}, \"frames\": [{{\"file_path\": \"a.png\", \
+                 \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}}]}}",
+                k[0], k[1], k[2], k[3]
+            )
+        };
+        for model in [
+            "\"camera_model\": \"OPENCV_FISHEYE\"",
+            "\"is_fisheye\": true",
+            "\"camera_model\": \"OPENCV\", \"is_fisheye\": true",
+        ] {
+            let found = &read("transforms.json", &file(model), &mut Vec::new()).unwrap()[0];
+            for (x, y) in [(0.3, -0.2), (1.2, 0.9), (-1.6, 0.4)] {
+                let r = math::hypot(x, y);
+                let theta = math::atan(r);
+                let t2 = theta * theta;
+                let g = 1.0 + k.iter().rev().fold(0.0, |sum, k| (sum + k) * t2);
+                let d = found.distortion.unwrap().distort(&[x, y].into());
+                let p = found.k * Vector3::new(d.x, d.y, 1.0);
+                assert!((p.x - (300.0 * x * theta / r * g + 320.0)).abs() < 1e-9);
+                assert!((p.y - (310.0 * y * theta / r * g + 240.0)).abs() < 1e-9);
+            }
+        }
+        for model in [
+            "\"camera_model\": \"ORTHOPHOTO\"",
+            "\"camera_model\": \"OPENCV_FISHEYE\", \"p1\": 0.1",
+        ] {
+            assert!(read("transforms.json", &file(model), &mut Vec::new()).is_err());
+        }
+    }
+}

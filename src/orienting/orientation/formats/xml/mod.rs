@@ -1,0 +1,89 @@
+//! Orientations in XML: elements with their place in the file, for messages.
+
+pub(crate) mod blocks;
+pub(crate) mod metashape;
+
+use nalgebra::Matrix3;
+use roxmltree::{Document, Node};
+
+use super::text::quoted_long;
+use crate::base::error::{Error, Result};
+use crate::photographs::camera::Distortion;
+
+/// Interior orientation of the images of one sensor.
+struct Sensor {
+    k: Matrix3<f64>,
+    distortion: Option<Distortion>,
+    size: (u32, u32),
+}
+
+/// Reads elements of one file; refusals name it and the line.
+pub(crate) struct XmlReader<'a> {
+    pub path: &'a str,
+}
+
+impl XmlReader<'_> {
+    pub(crate) fn number(&self, parent: Node, name: &str) -> Result<f64> {
+        let node = child(parent, name)
+            .ok_or_else(|| self.error(parent, &format!("<{name}> is missing")))?;
+        Ok(self.numbers::<1>(node)?[0])
+    }
+
+    pub(crate) fn numbers<const N: usize>(&self, node: Node) -> Result<[f64; N]> {
+        let text = node.text().unwrap_or_default();
+        let numbers: Vec<f64> = text
+            .split_whitespace()
+            .filter_map(|f| f.parse().ok())
+            .filter(|v: &f64| v.is_finite())
+            .collect();
+        let wrong = |_| self.error(node, &format!("it does not hold {N} finite numbers"));
+        numbers.try_into().map_err(wrong)
+    }
+
+    fn place(&self, node: Node) -> String {
+        format!("{}, line {}", self.path, line_of(node))
+    }
+
+    pub(crate) fn error(&self, node: Node, problem: &str) -> Error {
+        self.refusal(node, problem, "what the description of the format has here")
+    }
+
+    /// An error that says what should stand there.
+    fn refusal(&self, node: Node, problem: &str, expected: &str) -> Error {
+        Error::Line {
+            file: self.path.to_owned(),
+            line: line_of(node),
+            problem: format!("<{}>: {}", node.tag_name().name(), quoted_long(problem)),
+            expected: expected.to_owned(),
+        }
+    }
+
+    /// The number of an element that may be missing.
+    fn number_or(&self, parent: Node, name: &str, default: f64) -> Result<f64> {
+        match child(parent, name) {
+            Some(_) => self.number(parent, name),
+            None => Ok(default),
+        }
+    }
+}
+
+fn line_of(node: Node) -> usize {
+    node.document().text_pos_at(node.range().start).row as usize
+}
+
+pub(crate) fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
+    node.children().find(|n| n.has_tag_name(name))
+}
+
+pub(crate) fn text_of<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    child(node, name).and_then(|n| n.text()).map(str::trim)
+}
+
+pub(crate) fn parse<'a>(path: &str, text: &'a str) -> Result<Document<'a>> {
+    Document::parse(text.trim_start_matches('\u{feff}')).map_err(|e| Error::Line {
+        file: path.to_owned(),
+        line: e.pos().row as usize,
+        problem: quoted_long(&e.to_string()),
+        expected: "well-formed XML to the end of the file".to_owned(),
+    })
+}

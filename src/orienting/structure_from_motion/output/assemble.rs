@@ -1,0 +1,340 @@
+//! The sparse model and the report of a finished block.
+
+use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
+
+use super::report::{CameraReport, LeftOut, OrientReport, PhotoReport};
+use super::sparse_model::{OrientedPhoto, SparseModel, SparsePoint};
+use crate::orienting::structure_from_motion::block::{Block, Track};
+use crate::orienting::structure_from_motion::bundle::Covariance;
+use crate::orienting::structure_from_motion::frame::{FrameBasis, StatedPose};
+use crate::orienting::structure_from_motion::ground_control::ControlResidual;
+use crate::orienting::structure_from_motion::intrinsics::{Intrinsics, stated_focal_nats};
+
+/// Fewest shared points of photographs that count as overlapping.
+const FEWEST_SHARED: usize = 15;
+
+/// Least mean number of rays without a warning.
+const FEW_RAYS: f64 = 2.5;
+
+/// What the block's photographs and cameras are called, and what was known of them.
+pub(in super::super) struct Names<'a> {
+    /// Paths of the photographs.
+    pub paths: Vec<&'a str>,
+    /// Colours of their keypoints.
+    pub colours: Vec<&'a [[u8; 3]]>,
+    pub cameras: Vec<String>,
+    /// Cameras at the start.
+    pub means: &'a [Intrinsics],
+    /// Whose focal length was guessed.
+    pub is_guessed: &'a [bool],
+    pub stated: &'a [StatedPose],
+}
+
+fn tracks(block: &Block) -> impl Iterator<Item = (&Track, Point3<f64>)> {
+    block.tracks.iter().filter_map(|t| Some((t, t.point?)))
+}
+
+/// Residual of all used rays, pixels.
+fn residuals<'a>(
+    block: &'a Block,
+    t: &'a Track,
+    point: &'a Point3<f64>,
+) -> impl Iterator<Item = (usize, f64)> + 'a {
+    t.used()
+        .map(move |o| (o.photo, block.residual(o, point) * block.sigma_px(o)))
+}
+
+/// The model of what has an orientation.
+pub(in super::super) fn sparse_model(
+    block: &Block,
+    names: &Names,
+    basis: &FrameBasis,
+) -> SparseModel {
+    let registered = block.registered();
+    let mut slots = vec![usize::MAX; block.photos.len()];
+    let mut photos: Vec<OrientedPhoto> = Vec::new();
+    for &photo in &registered {
+        if let Some(pose) = &block.photos[photo].pose {
+            slots[photo] = photos.len();
+            photos.push(OrientedPhoto {
+                path: names.paths[photo].to_owned(),
+                camera: block.photos[photo].camera,
+                pose: pose.clone(),
+                rays: Vec::new(),
+            });
+        }
+    }
+    let mut points = Vec::new();
+    for (track, position) in tracks(block) {
+        let (mut rays, mut sum) = (Vec::new(), [0.0; 3]);
+        for o in track.used() {
+            let slot = slots[o.photo];
+            let pixel = block.pixel(o);
+            rays.push((slot, photos[slot].rays.len()));
+            photos[slot].rays.push(([pixel.x, pixel.y], points.len()));
+            let rgb = names.colours[o.photo][o.keypoint];
+            (0..3).for_each(|c| sum[c] += f64::from(rgb[c]));
+        }
+        let count = rays.len() as f64;
+        let square: f64 = residuals(block, track, &position).map(|(_, r)| r * r).sum();
+        points.push(SparsePoint {
+            position,
+            rgb: sum.map(|s| (s / count).round() as u8),
+            rms_px: (square / count).sqrt(),
+            rays,
+        });
+    }
+    SparseModel {
+        cameras: block.cameras.clone(),
+        photos,
+        points,
+        offset: match basis {
+            FrameBasis::Control { offset, .. } => (*offset).into(),
+            _ => Vector3::zeros(),
+        },
+    }
+}
+
+/// The report on a block in its frame.
+pub(in super::super) fn report(
+    block: &Block,
+    names: &Names,
+    basis: &FrameBasis,
+    covariance: Option<&Covariance>,
+    left_out: Vec<LeftOut>,
+) -> OrientReport {
+    let n = block.photos.len();
+    let (mut rays, mut squares) = (vec![0usize; n], vec![0.0f64; n]);
+    let mut shared = vec![0usize; n * n];
+    let mut points = 0;
+    for (track, position) in tracks(block) {
+        points += 1;
+        for (photo, r) in residuals(block, track, &position) {
+            rays[photo] += 1;
+            squares[photo] += r * r;
+            for other in track.used() {
+                shared[photo * n + other.photo] += 1;
+            }
+        }
+    }
+    let registered = block.registered();
+    let total: usize = rays.iter().sum();
+    let partners = |photo: usize| {
+        let others = registered.iter().filter(|&&other| other != photo);
+        others
+            .filter(|&&other| shared[photo * n + other] >= FEWEST_SHARED)
+            .count()
+    };
+    let photos: Vec<PhotoReport> = (registered.iter().enumerate())
+        .map(|(slot, &photo)| PhotoReport {
+            file: names.paths[photo].to_owned(),
+            rays: rays[photo],
+            rms_px: (squares[photo] / rays[photo].max(1) as f64).sqrt(),
+            sigma_m: covariance.map(|c| deviations(&c.centers[slot])),
+            sigma_deg: covariance.map(|c| largest_deviation(&c.turns[slot]).to_degrees()),
+            partners: partners(photo),
+            from_stated_m: from_stated(block, names, basis, photo),
+        })
+        .collect();
+    let mut overlap = Vec::new();
+    for (i, &a) in registered.iter().enumerate() {
+        for (j, &b) in registered.iter().enumerate().skip(i + 1) {
+            let count = shared[a * n + b];
+            if count >= FEWEST_SHARED {
+                overlap.push((i, j, count));
+            }
+        }
+    }
+    let rays_a_point = total as f64 / points.max(1) as f64;
+    let (frame, anchor, mut warnings) = frame_words(basis);
+    if rays_a_point < FEW_RAYS {
+        warnings.push(format!(
+            "only {rays_a_point:.1} photographs show a point on average: take more of them, with \
+             more overlap"
+        ));
+    }
+    let cameras = cameras(block, names, covariance);
+    warnings.extend(cameras.iter().filter_map(contradiction));
+    let (epsg, offset, control) = match basis {
+        FrameBasis::Control {
+            epsg,
+            offset,
+            points,
+            ..
+        } => (*epsg, *offset, points.clone()),
+        _ => (None, [0.0; 3], Vec::new()),
+    };
+    OrientReport {
+        frame,
+        anchor,
+        epsg,
+        offset,
+        is_metric: anchor.is_some() || !control.is_empty(),
+        control,
+        points,
+        rays: total,
+        rays_a_point,
+        rms_px: (squares.iter().sum::<f64>() / total.max(1) as f64).sqrt(),
+        cameras,
+        photos,
+        left_out,
+        overlap,
+        warnings,
+    }
+}
+
+fn cameras(block: &Block, names: &Names, covariance: Option<&Covariance>) -> Vec<CameraReport> {
+    (block.cameras.iter().enumerate())
+        .map(|(i, camera)| {
+            let oriented = block
+                .photos
+                .iter()
+                .filter(|p| p.camera == i && p.pose.is_some());
+            CameraReport {
+                name: names.cameras[i].clone(),
+                photos: oriented.count(),
+                stated_focal_px: names.means[i].focal,
+                is_stated: !names.is_guessed[i],
+                parameters: camera.parameters(),
+                sigmas: covariance.map(|c| c.cameras[i]),
+            }
+        })
+        .collect()
+}
+
+/// A stated focal length under which the adjusted one is less likely than under any other.
+fn contradiction(camera: &CameraReport) -> Option<String> {
+    let ([focal, ..], [sigma, ..]) = (camera.parameters, camera.sigmas?);
+    let stated = camera.stated_focal_px;
+    let nats = stated_focal_nats(focal, stated, sigma / focal);
+    (camera.is_stated && nats < 0.0).then(|| {
+        format!(
+            "the photographs contradict the stated focal length of {stated:.0} px: they say \
+             {focal:.0} +- {sigma:.0} px, which is {:.0} nats likelier and was taken; check whether \
+             the header belongs to the photographs, and whether they were cut",
+            -nats
+        )
+    })
+}
+
+fn from_stated(block: &Block, names: &Names, basis: &FrameBasis, photo: usize) -> Option<[f64; 3]> {
+    if !matches!(basis, FrameBasis::Positions { .. }) {
+        return None;
+    }
+    let center = block.photos[photo].pose.as_ref()?.center;
+    Some((center - names.stated[photo].position?).into())
+}
+
+fn deviations(covariance: &Matrix3<f64>) -> [f64; 3] {
+    [0, 1, 2].map(|i| covariance[(i, i)].max(0.0).sqrt())
+}
+
+fn largest_deviation(covariance: &Matrix3<f64>) -> f64 {
+    SymmetricEigen::new(*covariance)
+        .eigenvalues
+        .max()
+        .max(0.0)
+        .sqrt()
+}
+
+fn frame_words(
+    basis: &FrameBasis,
+) -> (
+    String,
+    Option<crate::orienting::orientation::Anchor>,
+    Vec<String>,
+) {
+    match basis {
+        FrameBasis::Control {
+            system,
+            anchor,
+            offset: [east, north, _],
+            points,
+            rms_m: [plan, height],
+            ..
+        } => {
+            let agreeing = points.iter().filter(|p| p.agrees).count();
+            let frame = match anchor {
+                Some(anchor) => format!(
+                    "metres, x east, y north, z up from longitude {:.3}, latitude {:.3}",
+                    anchor.lon_deg, anchor.lat_deg
+                ),
+                None => format!("{system}, x from {east} and y from {north} m"),
+            };
+            let words = format!(
+                "{frame}: {agreeing} of {} ground control points, rms {plan:.3} m in plan, \
+                 {height:.3} m in height",
+                points.len()
+            );
+            (words, *anchor, control_warnings(points))
+        }
+        FrameBasis::Positions {
+            anchor,
+            agreeing,
+            stated,
+            rms_m: [plan, height],
+            is_levelled,
+        } => {
+            let mut warnings = Vec::new();
+            if *is_levelled {
+                warnings.push(
+                    "the stated positions lie on one line: the slope across it follows from the \
+                     angles or the ground"
+                        .to_owned(),
+                );
+            }
+            let words = format!(
+                "metres, x east, y north, z up from longitude {:.3}, latitude {:.3}: the stated \
+                 positions of {agreeing} of {stated} photographs, rms {plan:.2} m in plan, \
+                 {height:.2} m in height (an offset common to all heights cannot be seen)",
+                anchor.lon_deg, anchor.lat_deg
+            );
+            (words, Some(*anchor), warnings)
+        }
+        FrameBasis::Angles { rms_deg } => (
+            format!(
+                "z up by the stated angles of the cameras (rms {rms_deg:.2} degrees); no positions"
+            ),
+            None,
+            vec![ARBITRARY_SCALE.to_owned()],
+        ),
+        FrameBasis::MainPlane => (
+            "z up across the main plane of the points; neither positions nor angles are stated"
+                .to_owned(),
+            None,
+            vec![ARBITRARY_SCALE.to_owned()],
+        ),
+    }
+}
+
+/// Which points or marks are wrong, and what to do.
+fn control_warnings(points: &[ControlResidual]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for p in points {
+        if let (Some([x, y, z]), false) = (p.residual_m, p.agrees) {
+            warnings.push(format!(
+                "ground control point {} is {x:.2}, {y:.2}, {z:.2} m (x, y, z) from where the others \
+                 put it: check its coordinates and marks",
+                p.name
+            ));
+        }
+        if p.residual_m.is_none() {
+            warnings.push(format!(
+                "ground control point {} is not used: mark it in two or more oriented photographs \
+                 ({} of its marks are in such)",
+                p.name, p.marks[0]
+            ));
+        }
+        if !p.wrong_marks.is_empty() {
+            warnings.push(format!(
+                "ground control point {} is marked elsewhere in {} than in the other photographs",
+                p.name,
+                p.wrong_marks.join(", ")
+            ));
+        }
+    }
+    warnings
+}
+
+pub(super) const ARBITRARY_SCALE: &str = "the scale is arbitrary (as if taken from 100 m above the ground): \
+                               measure one length to set it";

@@ -1,0 +1,508 @@
+//! A point cloud against what dense matching found: does it belong here, by how much is it moved,
+//! and which planes do its points propose?
+//!
+//! ```text
+//! patches of the views + points  ->  shift  ->  share of clear surfaces that the cloud has too
+//!                                           ->  points in the frame of the images  ->  planes
+//! ```
+//!
+//! Heights may have another datum, tens of metres off: the differences between patches and points
+//! that most places share are found first, without any bound. Around each the shift is sought by
+//! steps, so that
+//!
+//! ```text
+//! sum over points  max(0, c^2 - ((z_point + dz - z_patch(x + dx, y + dy)) / s)^2) / 2
+//! ```
+//!
+//! is largest: the log likelihood of a normal distribution with a uniform one beside it, to within
+//! a constant. Whether the cloud belongs here is asked where the images show roofs or ground
+//! clearly, as of footprints (`facets::register`). The planes are found as those of patches: points
+//! make patches, and patches in one plane regions.
+
+use nalgebra::{Point2, Point3, Vector2, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::least_rectangle::least_rectangle;
+use super::patch::{Patch, gradient_of};
+use super::patch_match::{PatchGrid, STEEPEST};
+use super::region::{Region, grow_regions};
+use super::surface_class::SurfaceEvidence;
+use crate::base::evidence::WindowEvidenceTable;
+use crate::base::geometry::{Plane, bounds};
+use crate::base::ids::ProposalOrigin;
+use crate::base::math::{exp, hypot, larger, ln, smaller};
+use crate::base::params::PointCloudParams;
+use crate::orienting::known::PointCloud;
+use crate::planes::grouping::ProposedPlane;
+use crate::planes::photoconsistency::PlanGrid;
+use crate::planes::terrain::Ground;
+
+/// A point cloud compared with the images.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct CloudComparison {
+    /// Its file.
+    pub file: String,
+    /// Standard deviation of its heights as stated, metres.
+    pub accuracy_m: f64,
+    /// What was done with it.
+    pub verdict: CloudVerdict,
+    /// Probability that it belongs to this place, 0 to 1.
+    pub belongs: f64,
+    /// By so much it was moved before it was used, east, north and up, metres.
+    pub moved_m: [f64; 3],
+    /// Share of the surfaces which the images show clearly, as roofs or as ground, that it has too;
+    /// absent where they show too little.
+    pub agreement: Option<f64>,
+    /// The planes that it proposes.
+    pub planes: Vec<CloudPlane>,
+}
+
+/// What was done with a point cloud.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+#[serde(rename_all = "kebab-case")]
+pub enum CloudVerdict {
+    /// It counted as it is.
+    Used,
+    /// It was moved as a whole to what the images show, and counted.
+    Moved,
+    /// The images show too little to compare it with, and it counted as it is.
+    Unchecked,
+    /// The images contradict it as a whole, and it was left out.
+    LeftOut,
+    /// Hardly any of its points lie in the scene.
+    Elsewhere,
+}
+
+/// A plane in a point cloud.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct CloudPlane {
+    /// The plane.
+    pub plane: Plane,
+    /// The least rectangle around its points in plan, in the plane, counter-clockwise from above.
+    pub ring: Vec<Point3<f64>>,
+    /// Area in plan, square metres.
+    pub area_m2: f64,
+}
+
+impl CloudPlane {
+    /// As a plane that facets may have; `index` is its place in the list.
+    pub fn proposed(&self, index: usize) -> ProposedPlane {
+        ProposedPlane {
+            origin: ProposalOrigin::CloudPlane(index as u32),
+            plane: self.plane,
+            ring: self.ring.clone(),
+        }
+    }
+}
+
+impl CloudComparison {
+    /// Does it count?
+    pub fn counts(&self) -> bool {
+        !matches!(
+            self.verdict,
+            CloudVerdict::LeftOut | CloudVerdict::Elsewhere
+        )
+    }
+
+    /// What the user should know; nothing where the images confirm the cloud.
+    pub fn warning(&self) -> Option<String> {
+        let file = &self.file;
+        let [x, y, z] = self.moved_m;
+        Some(match self.verdict {
+            CloudVerdict::Used => return None,
+            CloudVerdict::Moved => format!(
+                "{file} was moved by {x:.2} m east, {y:.2} m north and {z:.2} m up, to what the \
+                 images show"
+            ),
+            CloudVerdict::Unchecked => format!(
+                "the images show too little to check {file}; its points on roofs were used as \
+                 they are"
+            ),
+            CloudVerdict::LeftOut => format!(
+                "the images contradict {file} as a whole, so its points on roofs were left out: \
+                 check that it is of this place"
+            ),
+            CloudVerdict::Elsewhere => {
+                format!("hardly any point of {file} lies in the scene: check its coordinate system")
+            }
+        })
+    }
+
+    /// The points of a cloud as they were moved, local frame.
+    pub fn placed(&self, cloud: &PointCloud) -> Vec<Point3<f64>> {
+        let by = Vector3::from(self.moved_m);
+        cloud.points.iter().map(|p| p.cast() + by).collect()
+    }
+}
+
+/// Fewest points over patches to compare, and fewest in a scene that is that of the cloud.
+const FEWEST: usize = 30;
+/// Most points that are compared.
+const MOST_COMPARED: usize = 6000;
+/// A cloud is moved in plan by at most this, metres. Assumption: more is another place.
+const MOST_SHIFT_M: f64 = 4.0;
+/// First step of the search in plan, metres: half of the narrowest slopes.
+const STEP_M: f64 = 0.5;
+/// Steps are halved so often: to three centimetres.
+const HALVINGS: usize = 4;
+/// What differs by more standard deviations is another surface.
+const SAME: f64 = 3.0;
+/// So many datums are tried.
+const DATUMS: usize = 3;
+/// What matching tells of the height of a patch, in heights that move the images by a pixel.
+const PATCH_PIXELS: f64 = 0.3;
+/// A shift is named, and taken out, from so many standard deviations on.
+const SIGMAS: f64 = 2.0;
+/// No height or place is known better, metres, whatever is stated.
+const LEAST_SIGMA_M: f64 = 1e-3;
+/// A cloud that belongs here with less probability is left out.
+const DOUBTFUL: f64 = 0.5;
+
+/// What dense matching found, for the comparison.
+pub(super) struct Matched<'a> {
+    pub found: &'a PatchGrid,
+    pub regions: &'a [Region],
+    pub classes: &'a [SurfaceEvidence],
+    pub ground: &'a Ground,
+    pub z_per_pixel: f64,
+}
+
+/// Compares a cloud with the patches of the views, and finds its planes.
+pub(super) fn compare(
+    cloud: &PointCloud,
+    matched: &Matched,
+    params: &PointCloudParams,
+) -> CloudComparison {
+    let grid = &matched.found.grid;
+    let is_here = |p: &&Point3<f32>| grid.cell(&p.xy().cast()).is_some();
+    let points: Vec<Point3<f64>> = (cloud.points.iter())
+        .filter(is_here)
+        .map(|p| p.cast())
+        .collect();
+    let mut comparison = CloudComparison {
+        file: cloud.file.clone(),
+        accuracy_m: cloud.accuracy_m,
+        verdict: CloudVerdict::Elsewhere,
+        belongs: 0.0,
+        moved_m: [0.0; 3],
+        agreement: None,
+        planes: Vec::new(),
+    };
+    if points.len() < FEWEST {
+        return comparison;
+    }
+    let patch_m = PATCH_PIXELS * matched.z_per_pixel;
+    let surface = Surface {
+        patches: matched.found,
+        sigma_m: hypot(cloud.accuracy_m, patch_m).max(LEAST_SIGMA_M),
+        place_sigma_m: params.place_sigma_m.max(LEAST_SIGMA_M),
+    };
+    comparison.verdict = CloudVerdict::Unchecked;
+    comparison.belongs = params.belongs;
+    if let Some(shift) = surface.best_shift(&points) {
+        let away = hypot(shift.x, shift.y) > SIGMAS * hypot(params.place_sigma_m, patch_m)
+            || shift.z.abs() > SIGMAS * surface.sigma_m;
+        let moved = if away { shift } else { Vector3::zeros() };
+        // What no clear roof or ground confirms is neither moved nor believed more than before.
+        if let Some([agree, differ]) = agreement(matched, &points, &moved, &surface) {
+            let parts = grid.step * grid.step / params.part_m2;
+            let odds = log_odds(params.belongs)
+                + agree * parts * (ln(share(params.agreement)) - ln(share(params.chance)))
+                + differ
+                    * parts
+                    * (ln(1.0 - share(params.agreement)) - ln(1.0 - share(params.chance)));
+            comparison.agreement = Some(agree / (agree + differ));
+            comparison.belongs = 1.0 / (1.0 + exp(-odds));
+            comparison.moved_m = moved.into();
+            comparison.verdict = match away {
+                _ if comparison.belongs < DOUBTFUL => CloudVerdict::LeftOut,
+                true => CloudVerdict::Moved,
+                false => CloudVerdict::Used,
+            };
+        }
+    }
+    if comparison.counts() {
+        let placed = comparison.placed(cloud);
+        comparison.planes = planes(&placed, cloud.accuracy_m, matched, params);
+    }
+    comparison
+}
+
+/// A share that is neither nothing nor all, whatever the parameter is.
+fn share(parameter: f64) -> f64 {
+    parameter.clamp(1e-3, 1.0 - 1e-3)
+}
+
+fn log_odds(probability: f64) -> f64 {
+    ln(share(probability)) - ln(1.0 - share(probability))
+}
+
+/// The surface that the views agree on.
+struct Surface<'a> {
+    patches: &'a PatchGrid,
+    /// Standard deviation of a point's height against it, metres.
+    sigma_m: f64,
+    /// Standard deviation of the cloud in place, metres.
+    place_sigma_m: f64,
+}
+
+/// Do the views agree on a patch?
+fn agreed(patch: &Patch) -> bool {
+    WindowEvidenceTable::fitted().nats_of(patch.weight, patch.correlation) > 0.0
+}
+
+impl Surface<'_> {
+    fn z_at(&self, p: &Point2<f64>) -> Option<f64> {
+        let (column, row) = self.patches.grid.cell(p)?;
+        let patch = self.patches.patches[row * self.patches.grid.width + column].as_ref()?;
+        agreed(patch).then(|| patch.z_at(p))
+    }
+
+    /// How well points that are moved lie on it, nats; a shift in plan is the less likely the
+    /// larger it is.
+    fn nats(&self, points: &[Point3<f64>], by: &Vector3<f64>) -> f64 {
+        let of_point = |p: &Point3<f64>| {
+            let p = p + by;
+            let off = (p.z - self.z_at(&p.xy())?) / self.sigma_m;
+            Some(0.5 * larger(SAME * SAME - off * off, 0.0))
+        };
+        let away = hypot(by.x, by.y) / self.place_sigma_m;
+        points.iter().filter_map(of_point).sum::<f64>() - 0.5 * away * away
+    }
+
+    /// The shift at which most points lie on it; `None` where few lie over it.
+    fn best_shift(&self, points: &[Point3<f64>]) -> Option<Vector3<f64>> {
+        let every = points.len().div_ceil(MOST_COMPARED);
+        let points: Vec<Point3<f64>> = points.iter().copied().step_by(every).collect();
+        let rises = points
+            .iter()
+            .filter_map(|p| Some(self.z_at(&p.xy())? - p.z));
+        let datums = self.datums(rises.collect());
+        let reach = (MOST_SHIFT_M / STEP_M) as i32;
+        // No shift comes first, and of equally good ones the first counts.
+        let mut starts = vec![Vector3::zeros()];
+        for dz in datums {
+            for (y, x) in (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (y, x))) {
+                for z in [0.0, -1.0, 1.0] {
+                    let [x, y] = [x, y].map(|n| f64::from(n) * STEP_M);
+                    starts.push(Vector3::new(x, y, dz + z * SAME * self.sigma_m));
+                }
+            }
+        }
+        if starts.len() == 1 {
+            return None;
+        }
+        let nats = crate::base::execution::map(&starts, |_, by| self.nats(&points, by));
+        let best = (0..starts.len()).fold(0, |best, i| if nats[i] > nats[best] { i } else { best });
+        let (mut best, mut most) = (starts[best], nats[best]);
+        let mut step = Vector3::new(0.5 * STEP_M, 0.5 * STEP_M, 1.5 * self.sigma_m);
+        for _ in 0..HALVINGS {
+            for _ in 0..2 {
+                for (axis, sign) in [
+                    (2, 1.0),
+                    (2, -1.0),
+                    (0, 1.0),
+                    (0, -1.0),
+                    (1, 1.0),
+                    (1, -1.0),
+                ] {
+                    let mut by = best;
+                    by[axis] += sign * step[axis];
+                    let found = self.nats(&points, &by);
+                    if found > most {
+                        (best, most) = (by, found);
+                    }
+                }
+            }
+            step *= 0.5;
+        }
+        Some(best)
+    }
+
+    /// Heights by which many points lie below it, metres: those that most share first.
+    fn datums(&self, mut rises: Vec<f64>) -> Vec<f64> {
+        rises.sort_by(f64::total_cmp);
+        let width = 2.0 * SAME * self.sigma_m;
+        let mut found = Vec::new();
+        while found.len() < DATUMS && rises.len() >= FEWEST {
+            let (mut end, mut best) = (0, 0..0);
+            for start in 0..rises.len() {
+                while end < rises.len() && rises[end] <= rises[start] + width {
+                    end += 1;
+                }
+                if end - start > best.len() {
+                    best = start..end;
+                }
+            }
+            found.push(rises[best.start + best.len() / 2]);
+            rises.drain(best);
+        }
+        found
+    }
+}
+
+/// How many patches of clear roofs or ground the moved cloud agrees with, and how many not; `None`
+/// where the views show none. What is near the border of a surface is not asked.
+fn agreement(
+    matched: &Matched,
+    points: &[Point3<f64>],
+    moved: &Vector3<f64>,
+    surface: &Surface,
+) -> Option<[f64; 2]> {
+    let grid = &matched.found.grid;
+    // What lies highest above the ground, and nearest to the patch, in each cell.
+    let mut nearest = vec![f64::INFINITY; grid.width * grid.height];
+    let mut highest = vec![f64::NEG_INFINITY; grid.width * grid.height];
+    for p in points.iter().map(|p| p + moved) {
+        let Some((column, row)) = grid.cell(&p.xy()) else {
+            continue;
+        };
+        let cell = row * grid.width + column;
+        highest[cell] = larger(highest[cell], p.z - matched.ground.z_at(&p.xy()));
+        if let Some(patch) = matched.found.patches[cell].as_ref().filter(|p| agreed(p)) {
+            nearest[cell] = smaller(nearest[cell], (p.z - patch.z_at(&p.xy())).abs());
+        }
+    }
+    let [mut agree, mut differ] = [0.0; 2];
+    for (region, class) in matched.regions.iter().zip(matched.classes) {
+        let class = class.class();
+        let is_inside = |cell: usize| {
+            let around = matched.found.around(cell);
+            let of_region = around.filter(|(k, _)| region.cells.binary_search(k).is_ok());
+            of_region.count() == 8
+        };
+        for &cell in region.cells.iter().filter(|k| nearest[**k].is_finite()) {
+            if !is_inside(cell) {
+                continue;
+            }
+            let is_same = nearest[cell] < SAME * surface.sigma_m;
+            if class.building > SURE {
+                match is_same {
+                    true => agree += 1.0,
+                    false => differ += 1.0,
+                }
+            } else if class.ground > SURE && highest[cell] > ROOF_M && !is_same {
+                // Ground that both have tells no place from another.
+                differ += 1.0;
+            }
+        }
+    }
+    (agree + differ > 0.0).then_some([agree, differ])
+}
+
+/// A surface that is something with this probability shows it clearly.
+const SURE: f64 = 0.8;
+/// What stands higher above the ground, metres, is a roof or a tree.
+const ROOF_M: f64 = 2.0;
+
+/// The planes in a cloud above the ground, the largest first.
+fn planes(
+    points: &[Point3<f64>],
+    accuracy_m: f64,
+    matched: &Matched,
+    params: &PointCloudParams,
+) -> Vec<CloudPlane> {
+    let whole = &matched.found.grid;
+    let size = Vector2::new(whole.width as f64, whole.height as f64) * whole.step;
+    let [low, high] = [whole.origin, whole.origin + size];
+    let is_high = |p: &&Point3<f64>| {
+        whole.cell(&p.xy()).is_some() && p.z - matched.ground.z_at(&p.xy()) > params.least_height_m
+    };
+    let high_points: Vec<Point3<f64>> = points.iter().filter(is_high).copied().collect();
+    if high_points.is_empty() {
+        return Vec::new();
+    }
+    let density = points
+        .iter()
+        .filter(|p| whole.cell(&p.xy()).is_some())
+        .count() as f64
+        / (size.x * size.y);
+    let step = (1.0 / density).sqrt().clamp(FINEST_M, COARSEST_M);
+    let grid = PlanGrid::covering(low, high, step);
+    let mut cells = vec![Vec::new(); grid.width * grid.height];
+    for p in &high_points {
+        if let Some((column, row)) = grid.cell(&p.xy()) {
+            cells[row * grid.width + column].push((*p, 1.0));
+        }
+    }
+    let off_m = SAME * accuracy_m;
+    let patches = (0..cells.len()).map(|cell| patch(&grid, &cells, cell, accuracy_m));
+    let found = PatchGrid {
+        grid,
+        patches: patches.collect(),
+        views: Vec::new(),
+    };
+    // A patch lies in a plane within half of that.
+    let regions = grow_regions(&found, 2.0 * off_m);
+    let plane = |region: Region| {
+        let of_region = region.cells.iter().flat_map(|&k| &cells[k]);
+        let near = of_region.filter(|(p, _)| region.plane.signed_distance(p).abs() < off_m);
+        let near: Vec<(Point3<f64>, f64)> = near.copied().collect();
+        let plane = Plane::fit(&near)?.upwards();
+        if gradient_of(&plane).norm() > STEEPEST {
+            return None;
+        }
+        let area_m2 = region.cells.len() as f64 * grid.step * grid.step;
+        let middles: Vec<Point2<f64>> = near.iter().map(|(p, _)| p.xy()).collect();
+        let corners = least_rectangle(&middles, 0.25 * grid.step, &plane);
+        (area_m2 >= params.least_area_m2).then(|| CloudPlane {
+            plane,
+            ring: corners.iter().map(|p| plane.lift(p.x, p.y)).collect(),
+            area_m2,
+        })
+    };
+    let mut planes: Vec<CloudPlane> = regions.into_iter().filter_map(plane).collect();
+    planes.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
+    planes
+}
+
+/// Finest and coarsest distance of the patches of a cloud, metres.
+const FINEST_M: f64 = 0.5;
+const COARSEST_M: f64 = 2.0;
+/// Fewest points of a patch.
+const FEWEST_OF_PATCH: usize = 5;
+
+/// The patch of a cell: the plane through the points in it and around it, where they lie in one.
+fn patch(
+    grid: &PlanGrid,
+    cells: &[Vec<(Point3<f64>, f64)>],
+    cell: usize,
+    accuracy_m: f64,
+) -> Option<Patch> {
+    if cells[cell].is_empty() {
+        return None;
+    }
+    let (column, row) = (cell % grid.width, cell / grid.width);
+    let [columns, rows] = [(column, grid.width), (row, grid.height)]
+        .map(|(at, size)| at.saturating_sub(1)..=(at + 1).min(size - 1));
+    let around = rows.flat_map(|r| {
+        columns
+            .clone()
+            .flat_map(move |c| &cells[r * grid.width + c])
+    });
+    let points: Vec<(Point3<f64>, f64)> = around.copied().collect();
+    if points.len() < FEWEST_OF_PATCH {
+        return None;
+    }
+    // Points along a line span no plane.
+    let [low, high] = bounds(points.iter().map(|(p, _)| p.xy()));
+    if smaller(high.x - low.x, high.y - low.y) < grid.step {
+        return None;
+    }
+    let plane = Plane::fit(&points)?.upwards();
+    let off = points.iter().map(|(p, _)| plane.signed_distance(p));
+    let rms = (off.map(|off| off * off).sum::<f64>() / points.len() as f64).sqrt();
+    let gradient = gradient_of(&plane);
+    let is_plane = rms <= accuracy_m && gradient.norm() <= STEEPEST;
+    let middle = grid.center(column, row);
+    is_plane.then(|| Patch {
+        middle,
+        z: plane.z_at(middle.x, middle.y),
+        gradient,
+        correlation: 1.0,
+        weight: 1.0,
+    })
+}

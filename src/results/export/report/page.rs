@@ -1,0 +1,284 @@
+//! The page: one HTML file that needs no other, for the screen and for paper (A4 and letter).
+
+use std::fmt::Write;
+
+use nalgebra::{Point2, Vector2};
+
+use super::axonometric::axonometric;
+use super::plan::{Plan, building_plan, overview};
+use super::reported::ReportedModel;
+use super::svg::{Drawing, escaped};
+use crate::results::roof_report::{BuildingReport, Estimate, FacetReport, Lengths, RoofEdgeKind};
+
+const STYLE: &str = include_str!("style.css");
+
+/// What the figures are and what is assumed of their standard deviations.
+const EXPLANATION: &str = "Lengths and areas are those of the roof's faces, without thickness and \
+    overhang below; heights and volumes are above the ground as the model has it. After ± stands one \
+    standard deviation, from the adjustment of the roof to the edges in all photographs; how well \
+    the ground is known is not in it. Corners are taken as known independently of each other, \
+    heights of one building as off by the same. A figure without ± belongs to a face of which the \
+    photographs show too few edges.";
+
+/// The whole page.
+pub(super) fn page(reported: &ReportedModel) -> String {
+    let mut html = Html::default();
+    html.push(format_args!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width\">\n<title>Roof report</title>\n\
+         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>Roof report</h1>\n"
+    ));
+    let photographs = photographs(reported);
+    summary(&mut html, reported);
+    for (index, report) in reported.buildings.iter().enumerate() {
+        building(&mut html, reported, index, report, &photographs);
+    }
+    if !photographs.is_empty() {
+        html.push(format_args!("<section>\n<h2>Photographs</h2>\n"));
+        html.head(&["Number", "<Photograph", "Faces that it shows"]);
+        for (i, name) in photographs.iter().enumerate() {
+            let shows = |of: &&Vec<String>| of.contains(name);
+            let faces = reported.photographs.iter().filter(shows).count();
+            html.row(&[
+                &(i + 1).to_string(),
+                &format!("<{name}"),
+                &faces.to_string(),
+            ]);
+        }
+        html.end_table();
+        let note = "It shows a face that it sees at least half of, past the other roofs.";
+        html.push(format_args!("<p class=\"note\">{note}</p>\n</section>\n"));
+    }
+    html.push(format_args!("</body>\n</html>\n"));
+    html.text
+}
+
+/// All photographs that show a facet, sorted.
+fn photographs(reported: &ReportedModel) -> Vec<String> {
+    let mut names: Vec<String> = reported.photographs.concat();
+    names.sort();
+    names.dedup();
+    names
+}
+
+fn summary(html: &mut Html, reported: &ReportedModel) {
+    let buildings = &reported.buildings;
+    let faces: usize = buildings.iter().map(|b| b.facets.len()).sum();
+    let area: f64 = buildings.iter().map(|b| b.area_m2.value).sum();
+    let system = match &reported.system {
+        Some(system) => format!("Coordinates: {}.", escaped(system)),
+        None => "The coordinate system is that of the input, which does not name it.".into(),
+    };
+    if buildings.is_empty() {
+        html.push(format_args!(
+            "<p>No building was found.</p>\n<p class=\"note\">{system}</p>\n"
+        ));
+        return;
+    }
+    html.push(format_args!(
+        "<p>Buildings: {}. Roof faces: {faces}, {area:.1} m² in all. {system}</p>\n<p class=\"note\">{EXPLANATION}</p>\n",
+        buildings.len()
+    ));
+    html.figure(&overview(reported), "All buildings with their numbers");
+    html.push(format_args!("<ul class=\"legend\">"));
+    for kind in RoofEdgeKind::ALL {
+        let mut sample = Drawing::new(Vector2::new(10.0, 2.0), words(kind));
+        let (a, b) = (Point2::new(0.5, 1.0), Point2::new(9.5, 1.0));
+        sample.line(a, b, &format!("edge {}", kind.name()));
+        html.push(format_args!(
+            "<li>{}{}</li>",
+            sample.finish().trim_end(),
+            words(kind)
+        ));
+    }
+    html.push(format_args!("</ul>\n"));
+    html.head(&[
+        "Building",
+        "Faces",
+        "Roof area, m²",
+        "In plan, m²",
+        "Lowest eave, m",
+        "Highest point, m",
+        "Volume, m³",
+        "Walls seen",
+        "Within walls, m³",
+        "Probability",
+    ]);
+    let named = reported.names.iter().zip(&reported.walls);
+    for (report, (name, walls)) in buildings.iter().zip(named) {
+        let seen = walls.count.map(|[all, seen]| format!("{seen} of {all}"));
+        let within = walls.volume_m3.map(|volume| format!("{volume:.0}"));
+        html.row(&[
+            name,
+            &report.facets.len().to_string(),
+            &with_sigma(report.area_m2, 1),
+            &with_sigma(report.plan_area_m2, 1),
+            &with_sigma(report.lowest_m, 2),
+            &with_sigma(report.highest_m, 2),
+            &with_sigma(report.volume_m3, 0),
+            &seen.unwrap_or_default(),
+            &within.unwrap_or_default(),
+            &percent(report.probability),
+        ]);
+    }
+    html.end_table();
+}
+
+fn building(
+    html: &mut Html,
+    reported: &ReportedModel,
+    index: usize,
+    report: &BuildingReport,
+    photographs: &[String],
+) {
+    let name = escaped(&reported.names[index]);
+    html.push(format_args!("<section>\n<h2>{name}</h2>\n"));
+    let picture = axonometric(reported, index);
+    html.push(format_args!("<figure>{picture}</figure>\n"));
+    let caption = "Lengths in metres along the roof; numbers of faces with slope and fall";
+    html.figure(&building_plan(reported, report), caption);
+    html.push(format_args!("<h3>Faces</h3>\n"));
+    html.head(&[
+        "Face",
+        "Area, m²",
+        "In plan, m²",
+        "Slope, °",
+        "Falls to, °",
+        "Lowest, m",
+        "Highest, m",
+        "Probability",
+        "<Photographs",
+    ]);
+    for facet in &report.facets {
+        let own = &reported.photographs[facet.facet.index()];
+        let numbers = own
+            .iter()
+            .filter_map(|name| photographs.binary_search(name).ok());
+        let numbers: Vec<String> = numbers.map(|i| (i + 1).to_string()).collect();
+        html.row(&[
+            &facet.facet.0.to_string(),
+            &with_sigma(facet.area_m2, 2),
+            &with_sigma(facet.plan_area_m2, 2),
+            &with_sigma(facet.slope_deg, 1),
+            &facet.azimuth_deg.map_or_else(|| "level".into(), direction),
+            &with_sigma(facet.lowest_m, 2),
+            &with_sigma(facet.highest_m, 2),
+            &percent(facet.probability),
+            &format!("<{}", numbers.join(" ")),
+        ]);
+    }
+    html.end_table();
+    html.push(format_args!("<h3>Lengths, m</h3>\n"));
+    lengths(html, report);
+    html.push(format_args!("</section>\n"));
+}
+
+/// Lengths by kind, of every face and of the whole.
+fn lengths(html: &mut Html, report: &BuildingReport) {
+    let kinds = || (0..RoofEdgeKind::ALL.len()).filter(|&k| report.lengths[k].is_some());
+    let mut head = vec!["Face"];
+    head.extend(kinds().map(|k| words(RoofEdgeKind::ALL[k])));
+    html.head(&head);
+    let fields = |lengths: &Lengths| -> Vec<String> {
+        let field = |k: usize| lengths[k].map_or_else(String::new, |l| with_sigma(l, 2));
+        kinds().map(field).collect()
+    };
+    let mut row = |name: &str, lengths: &Lengths| {
+        let fields = fields(lengths);
+        let mut all = vec![name];
+        all.extend(fields.iter().map(String::as_str));
+        html.row(&all);
+    };
+    for facet in &report.facets {
+        let FacetReport { facet, lengths, .. } = facet;
+        row(&facet.0.to_string(), lengths);
+    }
+    row("all, each edge once", &report.lengths);
+    html.end_table();
+}
+
+/// A kind of edge in words.
+fn words(kind: RoofEdgeKind) -> &'static str {
+    match kind {
+        RoofEdgeKind::Ridge => "Ridge",
+        RoofEdgeKind::Hip => "Hip",
+        RoofEdgeKind::Valley => "Valley",
+        RoofEdgeKind::Transition => "Change of slope",
+        RoofEdgeKind::Eave => "Eave",
+        RoofEdgeKind::Rake => "Rake",
+        RoofEdgeKind::TopEdge => "Top edge",
+        RoofEdgeKind::Abutment => "Abutment",
+    }
+}
+
+/// A number with its standard deviation, both with so many decimals; no deviation is shown as none.
+fn with_sigma(estimate: Estimate, decimals: usize) -> String {
+    let Estimate { value, sigma } = estimate;
+    match sigma {
+        // Half of the last digit, so that nothing is shown as exact.
+        Some(sigma) => {
+            let unit = (0..decimals).fold(1.0, |unit, _| unit / 10.0);
+            let sigma = sigma.max(unit);
+            format!("{value:.decimals$} ± {sigma:.decimals$}")
+        }
+        None => format!("{value:.decimals$}"),
+    }
+}
+
+/// A direction as an angle and a point of the compass.
+fn direction(azimuth: Estimate) -> String {
+    const POINTS: [&str; 8] = ["N", "NE", "E", "SE", "S", "SW", "W", "NW"];
+    let point = (azimuth.value / 45.0).round() as usize % POINTS.len();
+    format!("{} {}", with_sigma(azimuth, 1), POINTS[point])
+}
+
+fn percent(probability: f64) -> String {
+    format!("{:.0} %", 100.0 * probability)
+}
+
+/// A page in the making.
+#[derive(Default)]
+struct Html {
+    text: String,
+}
+
+impl Html {
+    fn push(&mut self, content: std::fmt::Arguments) {
+        (self.text.write_fmt(content)).expect("a String takes all that is written");
+    }
+
+    fn figure(&mut self, plan: &Plan, caption: &str) {
+        let Plan { svg, scale } = plan;
+        self.push(format_args!(
+            "<figure>{svg}<figcaption>{caption}; 1:{scale} where it is printed at its size.</figcaption></figure>\n"
+        ));
+    }
+
+    /// Begins a table. Names that begin with < stand on the left.
+    fn head(&mut self, names: &[&str]) {
+        self.push(format_args!("<table>\n<thead>"));
+        self.cells("th", names);
+        self.push(format_args!("</thead>\n<tbody>\n"));
+    }
+
+    fn row(&mut self, fields: &[&str]) {
+        self.cells("td", fields);
+    }
+
+    fn cells(&mut self, element: &str, fields: &[&str]) {
+        self.push(format_args!("<tr>"));
+        for field in fields {
+            let (class, words) = match field.strip_prefix('<') {
+                Some(words) => (" class=\"left\"", words),
+                None => ("", *field),
+            };
+            let words = escaped(words);
+            self.push(format_args!("<{element}{class}>{words}</{element}>"));
+        }
+        self.push(format_args!("</tr>\n"));
+    }
+
+    fn end_table(&mut self) {
+        self.push(format_args!("</tbody>\n</table>\n"));
+    }
+}

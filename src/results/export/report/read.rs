@@ -1,0 +1,285 @@
+//! The model of a CityJSON file: every object with a Solid whose surfaces have semantics.
+//!
+//! What `ridgeline` states of a facet (standard deviations, probability, photographs) is taken from
+//! the attributes of its surface; files of others have none of it.
+
+use nalgebra::{Point3, Vector3};
+use serde_json::Value;
+
+use crate::base::geometry::{Plane, mean_point};
+use crate::base::ids::{BuildingId, FacetId};
+use crate::roofs::model::{
+    Building, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
+    Solid, SolidFace, Surface,
+};
+
+/// Roofs are no steeper than this, as the vertical part of a unit normal; what is called a roof and
+/// is steeper (the side of a dormer, say) is a wall here.
+const LEAST_NORMAL_Z: f64 = 1e-2;
+
+/// Of a smaller face the rounded corners tell no plane, square metres.
+const SLIVER_M2: f64 = 0.02;
+
+/// What a file says.
+pub(super) struct ReadModel {
+    pub(super) model: RoofModel,
+    pub(super) names: Vec<String>,
+    pub(super) photographs: Vec<Vec<String>>,
+    pub(super) walls: Vec<ReadWalls>,
+    pub(super) origin: Vector3<f64>,
+    pub(super) system: Option<String>,
+}
+
+/// Reads a file; an error says what was expected and where.
+pub(super) fn read_model(bytes: &[u8]) -> Result<ReadModel, String> {
+    let file: Value = serde_json::from_slice(bytes).map_err(|e| format!("is no JSON: {e}"))?;
+    if file["type"] != "CityJSON" {
+        return Err("is no CityJSON: its \"type\" is not \"CityJSON\"".into());
+    }
+    let vector = |name: &str| -> Result<Vector3<f64>, String> {
+        let numbers = numbers(&file["transform"][name]);
+        match numbers.as_deref() {
+            Some(&[x, y, z]) => Ok(Vector3::new(x, y, z)),
+            _ => Err(format!("\"transform\" has no \"{name}\" of three numbers")),
+        }
+    };
+    let (scale, origin) = (vector("scale")?, vector("translate")?);
+    let vertices = list(&file["vertices"]).ok_or("has no list \"vertices\"")?;
+    let vertices: Vec<Point3<f64>> = (vertices.iter().enumerate())
+        .map(|(i, v)| match numbers(v).as_deref() {
+            Some(&[x, y, z]) => Ok(Vector3::new(x, y, z).component_mul(&scale).into()),
+            _ => Err(format!("vertex {i} is not three numbers")),
+        })
+        .collect::<Result<_, String>>()?;
+    let objects = (file["CityObjects"].as_object()).ok_or("has no \"CityObjects\"")?;
+    // Shorter names first: building-2 before building-10.
+    let mut objects: Vec<_> = objects.iter().collect();
+    objects.sort_by_key(|(name, _)| (name.len(), name.as_str()));
+    let mut read = ReadModel {
+        model: RoofModel::default(),
+        names: Vec::new(),
+        photographs: Vec::new(),
+        walls: Vec::new(),
+        origin,
+        system: system(&file["metadata"]),
+    };
+    for (name, object) in &objects {
+        if let Some(geometry) = solid_of(object) {
+            let added = add_building(&mut read, object, geometry, &vertices);
+            if added.map_err(|problem| format!("{name}: {problem}"))? {
+                read.names.push((*name).clone());
+                read.walls.push(walls_of(&object["attributes"]));
+            }
+        }
+    }
+    if read.names.is_empty() && !objects.is_empty() {
+        return Err("holds no building as a Solid with a RoofSurface among its semantics".into());
+    }
+    Ok(read)
+}
+
+fn list(value: &Value) -> Option<&Vec<Value>> {
+    value.as_array()
+}
+
+/// Finite numbers.
+fn numbers(value: &Value) -> Option<Vec<f64>> {
+    let finite = |v: &Value| v.as_f64().filter(|n| n.is_finite());
+    list(value)?.iter().map(finite).collect()
+}
+
+/// The coordinate system in words.
+fn system(metadata: &Value) -> Option<String> {
+    if let Some(url) = metadata["referenceSystem"].as_str() {
+        let code = url
+            .rsplit_once("/EPSG/")
+            .and_then(|(_, rest)| rest.rsplit_once('/'));
+        return Some(code.map_or_else(|| url.to_owned(), |(_, code)| format!("EPSG:{code}")));
+    }
+    let title = metadata["title"].as_str()?;
+    title.strip_prefix("Roofs; coordinates ").map(str::to_owned)
+}
+
+/// The solid with semantics whose walls stand below the eaves (LoD 2.2), else the last one, which
+/// is the most detailed.
+fn solid_of(object: &Value) -> Option<&Value> {
+    let is_solid = |g: &&Value| g["type"] == "Solid" && g["semantics"]["surfaces"].is_array();
+    let mut solids = list(&object["geometry"])?.iter().rev().filter(is_solid);
+    let last = solids.clone().next();
+    solids.find(|g| g["lod"] == "2.2").or(last)
+}
+
+/// What the file says of the walls of a building.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ReadWalls {
+    /// Their number, and how many of them photographs show.
+    pub(super) count: Option<[u64; 2]>,
+    /// Volume within them, cubic metres, where they do not stand below the eaves.
+    pub(super) volume_m3: Option<f64>,
+}
+
+fn walls_of(attributes: &Value) -> ReadWalls {
+    let count = |name: &str| attributes[name].as_u64();
+    ReadWalls {
+        count: (count("walls").zip(count("wallsSeen"))).map(|(all, seen)| [all, seen]),
+        volume_m3: attributes["volumeWithinWalls"].as_f64(),
+    }
+}
+
+/// Adds the building of an object; false where it has no roof.
+fn add_building(
+    read: &mut ReadModel,
+    object: &Value,
+    geometry: &Value,
+    vertices: &[Point3<f64>],
+) -> Result<bool, String> {
+    let shell = list(&geometry["boundaries"][0]).ok_or("its Solid has no shell")?;
+    let semantics = &geometry["semantics"];
+    let id = BuildingId::from_index(read.model.buildings.len());
+    let mut solid = Solid::default();
+    let mut own = std::collections::BTreeMap::new();
+    let mut facets = Vec::new();
+    for (i, face) in shell.iter().enumerate() {
+        let of_face = |problem: &str| format!("face {i}: {problem}");
+        let rings = list(face).ok_or_else(|| of_face("no list of rings"))?;
+        let rings: Vec<Vec<Point3<f64>>> = (rings.iter())
+            .map(|ring| {
+                ring_of(ring, vertices)
+                    .ok_or_else(|| of_face("a ring is not three or more vertices of the file"))
+            })
+            .collect::<Result<_, _>>()?;
+        if rings.is_empty() {
+            return Err(of_face("no ring"));
+        }
+        let surface = (semantics["values"][0][i].as_u64())
+            .map_or(&Value::Null, |s| &semantics["surfaces"][s as usize]);
+        let roof_plane = match surface["type"].as_str() {
+            Some("RoofSurface") => plane_of(&rings),
+            _ => None,
+        };
+        let kind = match (roof_plane, surface["type"].as_str()) {
+            (Some(plane), _) => {
+                let facet = FacetId::from_index(read.model.facets.len());
+                let facet_of = facet_of(id, plane, &rings, surface);
+                read.model.facets.push(facet_of);
+                read.photographs.push(names(&surface["photographs"]));
+                facets.push(facet);
+                Surface::Roof(facet)
+            }
+            (None, Some("GroundSurface")) => Surface::Ground,
+            _ => Surface::Wall,
+        };
+        let mut index = |p: &Point3<f64>| {
+            let next = solid.vertices.len() as u32;
+            // Bits, because the same vertex has the same ones.
+            let index = *own.entry([p.x, p.y, p.z].map(f64::to_bits)).or_insert(next);
+            if index == next {
+                solid.vertices.push(*p);
+            }
+            index
+        };
+        let rings = rings
+            .iter()
+            .map(|ring| ring.iter().map(&mut index).collect());
+        solid.faces.push(SolidFace {
+            surface: kind,
+            rings: rings.collect(),
+        });
+    }
+    if facets.is_empty() {
+        return Ok(false);
+    }
+    let lowest = solid.vertices.iter().fold(f64::INFINITY, |z, p| z.min(p.z));
+    let stated = object["attributes"]["groundHeight"].as_f64();
+    read.model.buildings.push(Building {
+        facets,
+        ground_z: stated.map_or(lowest, |z| z - read.origin.z),
+        solid,
+    });
+    Ok(true)
+}
+
+fn ring_of(ring: &Value, vertices: &[Point3<f64>]) -> Option<Vec<Point3<f64>>> {
+    let vertex = |v: &Value| vertices.get(usize::try_from(v.as_u64()?).ok()?).copied();
+    let ring: Vec<_> = list(ring)?.iter().map(vertex).collect::<Option<_>>()?;
+    (ring.len() >= 3).then_some(ring)
+}
+
+/// The plane of a roof, from the vector area of its rings through their middle; `None` where it
+/// does not look up.
+fn plane_of(rings: &[Vec<Point3<f64>>]) -> Option<Plane> {
+    let mut area = Vector3::zeros();
+    for ring in rings {
+        for i in 1..ring.len() - 1 {
+            area += (ring[i] - ring[0]).cross(&(ring[i + 1] - ring[0])) / 2.0;
+        }
+    }
+    let looks_up = |plane: &Plane| plane.normal.z > LEAST_NORMAL_Z;
+    let middle = mean_point(&rings[0]);
+    let plane = Plane::from_point_normal(&middle, &area).filter(looks_up);
+    let is_sliver = area.norm() < SLIVER_M2;
+    plane.or_else(|| Plane::from_point_normal(&middle, &Vector3::z()).filter(|_| is_sliver))
+}
+
+fn facet_of(id: BuildingId, plane: Plane, rings: &[Vec<Point3<f64>>], surface: &Value) -> Facet {
+    let number = |name: &str| surface[name].as_f64();
+    Facet {
+        building: id,
+        plane,
+        outer: rings[0].clone(),
+        holes: rings[1..].to_vec(),
+        similarity: number("similarity").unwrap_or(0.0),
+        real_ratio: number("realLineRatio").unwrap_or(0.0),
+        probability: number("probability").unwrap_or(1.0),
+        uncertainty: uncertainty_of(surface, rings),
+        lines: Vec::new(),
+        half_planes: Vec::new(),
+        proposals: Vec::new(),
+    }
+}
+
+fn uncertainty_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<FacetUncertainty> {
+    let outer = &rings[0];
+    let stated = list(&surface["cornerSigma"])?;
+    let corner = |(at, sigma): (&Point3<f64>, &Value)| match numbers(sigma).as_deref() {
+        Some(&[x, y, z]) => Some(CornerUncertainty {
+            at: *at,
+            sigma_m: Vector3::new(x, y, z),
+        }),
+        _ => None,
+    };
+    let corners: Option<Vec<_>> = outer.iter().zip(stated).map(corner).collect();
+    Some(FacetUncertainty {
+        height_m: surface["heightSigma"].as_f64()?,
+        slope_deg: surface["slopeSigmaDeg"].as_f64()?,
+        corners: corners.filter(|corners| corners.len() == outer.len())?,
+        sides: sides_of(surface, rings).unwrap_or_default(),
+    })
+}
+
+/// The sides of all rings but those of which nothing is known; `None` where the file has no sides.
+fn sides_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<Vec<SideUncertainty>> {
+    let [sigmas, supports] = ["sideSigma", "sideSupport"].map(|name| list(&surface[name]));
+    let (sigmas, supports) = (sigmas?, supports?);
+    let mut sides = Vec::new();
+    for (i, ring) in rings.iter().enumerate() {
+        let [sigmas, supports] = [sigmas, supports].map(|of| of.get(i).and_then(list));
+        let (sigmas, supports) = (sigmas?, supports?);
+        for (k, p) in ring.iter().enumerate() {
+            let (sigma, support) = (sigmas.get(k)?, supports.get(k)?);
+            if !sigma.is_null() {
+                sides.push(SideUncertainty {
+                    ends: [p.xy(), ring[(k + 1) % ring.len()].xy()],
+                    sigma_m: sigma.as_f64()?,
+                    support: SideSupport::named(support.as_str()?)?,
+                });
+            }
+        }
+    }
+    Some(sides)
+}
+
+fn names(value: &Value) -> Vec<String> {
+    let names = list(value).into_iter().flatten();
+    names.filter_map(|n| Some(n.as_str()?.to_owned())).collect()
+}

@@ -1,0 +1,30 @@
+//! From facets to buildings (B99 4.2, 4.3, figure 24; section 2 for refinement).
+//!
+//! ```text
+//! rectangles   chosen planes of W96 -> closed buildings
+//! reconstruct  the stages: facets -> closed buildings; these -> refinement -> roof model
+//! refine       adjusts the wireframe of each building to the image edges of all views
+//! parapets     roofs below the parapets that bound them
+//! model_lines  lines that the finished model contradicts, duplicates and new lines
+//! ```
+//!
+//! Invariant: every facet of the result belongs to one building whose solid is closed.
+
+mod model_lines;
+mod parapets;
+mod reconstruct;
+mod rectangles;
+mod refine;
+
+pub use model_lines::{VerifiedLines, verify_lines};
+pub use parapets::Parapet;
+pub use reconstruct::{
+    RefinementTrace, RoofTrace, UnrefinedFacets, reconstruct_roofs, refine_buildings,
+};
+pub use rectangles::roofs_of_rectangles;
+#[cfg(test)]
+pub(crate) use refine::gable;
+pub use refine::{
+    BuildingRefinement, RefineRejection, RelationKind, RoofGap, SideKind, Statement,
+    TestedRelation, adjust_to_statements, cut_back_at_gaps, refine_roofs,
+};

@@ -1,0 +1,188 @@
+//! Points of a cloud as evidence for roofs, in nats.
+//!
+//! A position of the plan is told by the point of the cloud nearest to it. With r its height above
+//! a plane, and h its height above the ground, a cloud that is right as often as its parameters say
+//! tells the plane from no roof by
+//!
+//! ```text
+//! L = ((1 - o) N(r; s) + o / R) / (g N(h; s0) + (1 - g) / R),   s^2 = sz^2 + (slope sxy)^2
+//! ```
+//!
+//! o being the share of the points above a roof that are not on it, g that of the points on the
+//! ground where no roof is, and R the range of heights of all others. So many points as are
+//! independent of each other count for a square metre: at most five nats, as much as clear images
+//! say.
+//!
+//! With the probability w that the cloud belongs here every ratio becomes w L + (1 - w). A plane
+//! as a whole may be no roof, or none any more, by the share e of those in error; then the points
+//! are as likely as by the better of both,
+//!
+//! ```text
+//! L' = ((1 - e) L + e max(L, 1)) / ((1 - e) + e max(L, 1))
+//! ```
+//!
+//! so that what the cloud says of a facet lies between the logarithms of e and of 1 / e.
+
+use std::sync::Arc;
+
+use nalgebra::{Point2, Vector2};
+
+use super::input::PlacedCloud;
+use crate::base::evidence::{EvidenceTerm, POINT_CLOUD};
+use crate::base::geometry::{Plane, bounds};
+use crate::base::math::{exp, hypot, larger, ln, normal_density};
+use crate::photographs::raster::mark_inside;
+use crate::planes::photoconsistency::PlanGrid;
+use crate::planes::terrain::Ground;
+use crate::roofs::model::Facet;
+
+/// Finest sample of the plan, metres, and most samples.
+const SAMPLE_M: f64 = 0.25;
+const MOST_SAMPLES: f64 = 4e6;
+/// A point tells of positions as far away as this, metres, where no other is nearer. Assumption: a
+/// cloud has a point on a square metre; farther ones lie on other surfaces.
+const REACH_M: f64 = 0.75;
+/// Standard deviation of the height of the ground, metres, as the images show it: a few
+/// decimetres.
+const GROUND_SIGMA_M: f64 = 0.3;
+/// No height is known better, metres, whatever is stated.
+const LEAST_SIGMA_M: f64 = 1e-3;
+
+/// A point cloud over the plan of a scene.
+#[derive(Clone, Debug)]
+pub(super) struct CloudEvidence {
+    cloud: Arc<PlacedCloud>,
+    grid: PlanGrid,
+    /// The point nearest to each sample; `u32::MAX` for none.
+    nearest: Vec<u32>,
+    /// How likely each point is where no roof is, per metre of height.
+    elsewhere: Vec<f64>,
+}
+
+/// What a cloud says of one plane.
+pub(super) struct OfPlane<'a> {
+    cloud: &'a CloudEvidence,
+    plane: Plane,
+    /// Standard deviation of a point's height above it, metres.
+    sigma_m: f64,
+}
+
+impl CloudEvidence {
+    /// Lays the cloud over the plan.
+    pub(super) fn new(cloud: Arc<PlacedCloud>, ground: &Ground, window: &PlanGrid) -> Self {
+        let size = Vector2::new(window.width as f64, window.height as f64) * window.step;
+        let step = larger(SAMPLE_M, (size.x * size.y / MOST_SAMPLES).sqrt());
+        let grid = PlanGrid::covering(window.origin, window.origin + size, step);
+        let mut nearest = vec![(u32::MAX, REACH_M as f32); grid.width * grid.height];
+        let reach = (REACH_M / step).ceil() as isize;
+        for (i, p) in cloud.points.iter().enumerate() {
+            let at = (p.xy() - grid.origin) / step;
+            let [column, row] = [at.x, at.y].map(|v| v.floor() as isize);
+            for (r, c) in (-reach..=reach).flat_map(|r| (-reach..=reach).map(move |c| (r, c))) {
+                let (Ok(c), Ok(r)) = (usize::try_from(column + c), usize::try_from(row + r)) else {
+                    continue;
+                };
+                if c < grid.width && r < grid.height {
+                    let stored = &mut nearest[r * grid.width + c];
+                    let away = (grid.center(c, r) - p.xy()).norm() as f32;
+                    if away < stored.1 {
+                        *stored = (i as u32, away);
+                    }
+                }
+            }
+        }
+        let params = &cloud.params;
+        let sigma_m = hypot(cloud.accuracy_m, GROUND_SIGMA_M);
+        let elsewhere = cloud.points.iter().map(|p| {
+            let height = p.z - ground.z_at(&p.xy());
+            params.ground_share * normal_density(height, sigma_m)
+                + (1.0 - params.ground_share) / params.range_m
+        });
+        Self {
+            elsewhere: elsewhere.collect(),
+            nearest: nearest.into_iter().map(|(i, _)| i).collect(),
+            cloud,
+            grid,
+        }
+    }
+
+    /// What it says of a plane.
+    pub(super) fn of(&self, plane: &Plane) -> OfPlane<'_> {
+        let slope = plane.normal.xy().norm() / larger(plane.normal.z, 0.1);
+        let place = slope * self.cloud.params.place_sigma_m;
+        OfPlane {
+            cloud: self,
+            plane: *plane,
+            sigma_m: larger(hypot(self.cloud.accuracy_m, place), LEAST_SIGMA_M),
+        }
+    }
+
+    /// What it says of a facet.
+    pub(super) fn of_facet(&self, facet: &Facet) -> EvidenceTerm {
+        let of_plane = self.of(&facet.plane);
+        let PlanGrid { origin, step, .. } = self.grid;
+        let [low, high] = bounds(facet.outer.iter().map(|p| p.xy()));
+        let corner = |p: Point2<f64>| {
+            let at = (p - origin) / step;
+            [(at.x, self.grid.width), (at.y, self.grid.height)]
+                .map(|(v, size)| v.clamp(0.0, (size - 1) as f64) as usize)
+        };
+        let ([c0, r0], [c1, r1]) = (corner(low), corner(high));
+        let (width, height) = (c1 + 1 - c0, r1 + 1 - r0);
+        let shift = Vector2::new(c0 as f64, r0 as f64);
+        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
+        let plan = rings.map(|ring| {
+            let place = |p: &nalgebra::Point3<f64>| (p.xy() - origin) / step - shift;
+            ring.iter().map(|p| Point2::from(place(p))).collect()
+        });
+        let mut covered = vec![false; width * height];
+        mark_inside(&plan.collect::<Vec<Vec<_>>>(), width, height, &mut covered);
+        let (mut nats, mut on_it, mut told) = (0.0, 0.0, 0.0);
+        for k in (0..covered.len()).filter(|k| covered[*k]) {
+            if let Some(ratio) = of_plane.ratio(c0 + k % width, r0 + k / width) {
+                nats += ln(ratio) * step * step * self.cloud.params.independent_per_m2;
+                told += 1.0;
+                on_it += if ratio > 1.0 { 1.0 } else { 0.0 };
+            }
+        }
+        let e = self.cloud.params.in_error;
+        // Beyond that both ratios are at their bounds.
+        let ratio = exp(nats.clamp(-MOST_NATS, MOST_NATS));
+        let older = e * larger(ratio, 1.0);
+        let ratio = ((1.0 - e) * ratio + older) / (1.0 - e + older);
+        EvidenceTerm {
+            feature: POINT_CLOUD,
+            value: if told > 0.0 { on_it / told } else { 0.5 },
+            nats: self.weighed(ratio),
+        }
+    }
+
+    /// The logarithm of a ratio that holds where the cloud belongs here.
+    fn weighed(&self, ratio: f64) -> f64 {
+        ln(self.cloud.belongs * ratio + 1.0 - self.cloud.belongs)
+    }
+}
+
+const MOST_NATS: f64 = 100.0;
+
+impl OfPlane<'_> {
+    /// What it says at a position of the plan, nats for each square metre; 0 where it has no point.
+    pub(super) fn nats_at(&self, p: &Point2<f64>) -> f64 {
+        let cell = self.cloud.grid.cell(p);
+        let ratio = cell.and_then(|(column, row)| self.ratio(column, row));
+        let independent = self.cloud.cloud.params.independent_per_m2;
+        ratio.map_or(0.0, |ratio| independent * self.cloud.weighed(ratio))
+    }
+
+    /// L of a sample.
+    fn ratio(&self, column: usize, row: usize) -> Option<f64> {
+        let sample = row * self.cloud.grid.width + column;
+        let point = *self.cloud.nearest.get(sample)? as usize;
+        let p = self.cloud.cloud.points.get(point)?;
+        let params = &self.cloud.cloud.params;
+        let off = p.z - self.plane.z_at(p.x, p.y);
+        let on_roof = (1.0 - params.off_share) * normal_density(off, self.sigma_m)
+            + params.off_share / params.range_m;
+        Some(on_roof / self.cloud.elsewhere[point])
+    }
+}

@@ -1,0 +1,285 @@
+//! From competing planes to facets: the stage that orders B99 4.3.
+//!
+//! labelling -> outlines -> verification. A facet that fails verification is rejected and the
+//! labelling continues without it, as the paper updates the neighbours of a plane that is removed.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::competing_planes::CompetingPlanes;
+use super::delineation::{Outline, delineate};
+use super::islands::without_islands;
+use super::register::{RegisterEvidence, RegisterTrace};
+use super::verification::{
+    FacetRejection, KnownEvidence, Measured, RejectedFacet, tail_on_ground, verify,
+};
+use crate::base::evidence::JudgedFacet;
+use crate::base::labelling::Labelling;
+use crate::base::params::RoofParams;
+use crate::orienting::scene::Scene;
+use crate::planes::terrain::Ground;
+use crate::roofs::model::{Facet, Occluders};
+
+/// What delineation and verification did.
+#[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct FacetTrace {
+    /// Every facet that was weighed, with what speaks for it and against it: the accepted ones in
+    /// their order before refinement, then those that were rejected as improbable.
+    pub judged: Vec<JudgedFacet>,
+    /// Rejected facets.
+    pub rejected: Vec<RejectedFacet>,
+    /// A register that is known, compared with the model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(target_arch = "wasm32", tsify(optional))]
+    pub register: Option<RegisterTrace>,
+}
+
+/// Facets on the planes that compete (B99 4.3). Their `building` is still unset (0): facets that
+/// touch become buildings when walls are added.
+pub fn reconstruct_facets(
+    scene: &Scene,
+    competing: &CompetingPlanes,
+    ground: &Ground,
+    params: &RoofParams,
+) -> (Vec<Facet>, FacetTrace) {
+    let labelling_with = |register: Option<&RegisterEvidence>| {
+        Labelling::new(
+            competing.energy(register, params),
+            competing.planes.len() as u32,
+        )
+    };
+    let known = KnownEvidence {
+        colours: scene,
+        register: None,
+        cloud: competing.cloud.as_ref(),
+    };
+    let mut verified = solve(labelling_with(None), competing, ground, &known, params);
+    let register = scene.known.footprints.as_ref().map(|register| {
+        let CompetingPlanes {
+            evidence,
+            arrangement,
+            grid,
+            ..
+        } = competing;
+        let mut register = RegisterEvidence::new(register, &params.register, arrangement, grid);
+        // What the images show by themselves tells what the register is worth.
+        register.compare(&verified.facets);
+        if register.counts() {
+            let known = KnownEvidence {
+                register: Some(&register),
+                ..known
+            };
+            let labelling = labelling_with(Some(&register));
+            verified = solve(labelling, competing, ground, &known, params);
+        }
+        register.findings(&verified.facets, evidence.ground(), &arrangement.areas)
+    });
+    let trace = FacetTrace {
+        judged: verified.judged,
+        rejected: verified.rejected,
+        register,
+    };
+    (verified.facets, trace)
+}
+
+/// The facets that stand, all that were weighed, and those that were rejected.
+struct Verified {
+    facets: Vec<Facet>,
+    judged: Vec<JudgedFacet>,
+    rejected: Vec<RejectedFacet>,
+}
+
+/// Labels, delineates and verifies until no facet is rejected.
+fn solve(
+    mut labelling: Labelling,
+    competing: &CompetingPlanes,
+    ground: &Ground,
+    known: &KnownEvidence,
+    params: &RoofParams,
+) -> Verified {
+    const ROUNDS: usize = 4;
+    let (mut rejected, mut improbable) = (Vec::new(), Vec::new());
+    // By plane and cells.
+    let mut measured: BTreeMap<(u32, Vec<usize>), Measured> = BTreeMap::new();
+    for round in 1..=ROUNDS {
+        labelling.minimise();
+        let labels = labelling.labels();
+        let labels = without_islands(&competing.arrangement, labels, params.min_area_m2);
+        let delineation = delineate(&competing.arrangement, &labels, &competing.planes);
+        labelling.relabel(labels);
+        let (mut facets, mut accepted) = (Vec::new(), Vec::new());
+        let mut stands = vec![false; delineation.outlines.len()];
+        let mut excluded: Vec<(u32, Vec<usize>)> = Vec::new();
+        // On the ground no other plane may take their place: they stay in the labelling.
+        let mut on_ground = Vec::new();
+        let found: Vec<Facet> = (delineation.outlines.iter())
+            .map(|outline| competing.facet(outline, &delineation))
+            .collect();
+        let occluders = Occluders::new(&found);
+        let results = crate::base::execution::map(&delineation.outlines, |i, outline| {
+            let before = measured.get(&(outline.plane, outline.cells.clone()));
+            let facet = (&found[i], outline);
+            verify(competing, facet, &occluders, ground, known, before, params)
+        });
+        for (i, ((outline, facet), result)) in
+            (delineation.outlines.iter().zip(found).zip(results)).enumerate()
+        {
+            let reason = match result {
+                Ok(verified) => {
+                    let windows = verified.windows().clone();
+                    let evidence = verified.evidence;
+                    let key = (outline.plane, outline.cells.clone());
+                    measured.insert(key, verified.measured);
+                    let probability = evidence.probability();
+                    let judged = JudgedFacet {
+                        outline: facet.outer.clone(),
+                        holes: facet.holes.clone(),
+                        plane: facet.plane,
+                        accepted: evidence.accepts(params.least_nats),
+                        evidence: evidence.clone(),
+                        windows,
+                    };
+                    if judged.accepted {
+                        facets.push(Facet {
+                            probability,
+                            ..facet
+                        });
+                        accepted.push(judged);
+                        stands[i] = true;
+                        continue;
+                    }
+                    improbable.push(judged);
+                    FacetRejection::Improbable { evidence }
+                }
+                Err(reason) => reason,
+            };
+            if round < ROUNDS
+                && matches!(reason, FacetRejection::ReachesGround { .. })
+                && let Some(tail) = tail_on_ground(
+                    &facet.plane,
+                    &outline.cells,
+                    &competing.arrangement,
+                    ground,
+                    params.min_height_m,
+                )
+            {
+                excluded.push((outline.plane, tail));
+                continue;
+            }
+            let near_ground = matches!(reason, FacetRejection::NearGround { .. });
+            let rejection = RejectedFacet {
+                group: outline.plane,
+                outline: facet.outer,
+                reason,
+            };
+            if near_ground {
+                on_ground.push(rejection);
+            } else {
+                rejected.push(rejection);
+                excluded.push((outline.plane, outline.cells.clone()));
+            }
+        }
+        if excluded.is_empty() || round == ROUNDS {
+            rejected.extend(on_ground);
+            accepted.extend(improbable);
+            let simpler = competing.simplify(delineation, &stands, params);
+            let outlines = simpler
+                .outlines
+                .iter()
+                .zip(stands)
+                .filter(|(_, stands)| *stands);
+            let simple = |(facet, (outline, _)): (Facet, (&Outline, bool))| Facet {
+                probability: facet.probability,
+                ..competing.facet(outline, &simpler)
+            };
+            return Verified {
+                facets: facets.into_iter().zip(outlines).map(simple).collect(),
+                judged: accepted,
+                rejected,
+            };
+        }
+        for (plane, cells) in excluded {
+            labelling.exclude(plane, &cells);
+        }
+    }
+    unreachable!("the last round returns")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::geometry::Plane;
+    use crate::base::ids::ProposalOrigin;
+    use crate::planes::grouping::ProposedPlane;
+    use crate::planes::rendered_planes::{TexturedPlane, scene};
+    use crate::roofs::facets::{FacetInput, competing_planes};
+    use crate::roofs::testing::line;
+    use nalgebra::{Point3, Vector3};
+
+    const ROOF_Z: f64 = 5.0;
+
+    fn level(z: f64) -> Plane {
+        Plane {
+            normal: Vector3::z(),
+            d: -z,
+        }
+    }
+
+    /// A rectangle of 8 m by 6 m around the origin, at a height.
+    fn rectangle(index: u32, z: f64) -> ProposedPlane {
+        let corners = [(-4.0, -3.0), (4.0, -3.0), (4.0, 3.0), (-4.0, 3.0)];
+        ProposedPlane {
+            origin: ProposalOrigin::Rectangle(index),
+            plane: level(z),
+            ring: corners.map(|(x, y)| Point3::new(x, y, z)).to_vec(),
+        }
+    }
+
+    /// The facets of a flat roof of which one eave was matched, without a half-plane, with planes
+    /// that are proposed for it.
+    fn facets(proposals: &[ProposedPlane]) -> Vec<Facet> {
+        let on_roof = |x: f64, y: f64| x.abs() < 4.0 && y.abs() < 3.0;
+        let textured = |plane, exists| TexturedPlane {
+            plane,
+            exists,
+            texture: 0.3,
+        };
+        let scene = scene(&[
+            textured(level(ROOF_Z), on_roof),
+            textured(level(0.0), |_, _| true),
+        ]);
+        let eave = line(
+            Point3::new(-4.0, -3.0, ROOF_Z),
+            Point3::new(4.0, -3.0, ROOF_Z),
+        );
+        let evidence = FacetInput {
+            segments: &[],
+            lines: &[eave],
+            half_planes: &[],
+            ground: &Ground::level(0.0),
+            proposals,
+            cloud: None,
+            line_pairs: true,
+        };
+        let params = RoofParams::default();
+        let (competing, _) = competing_planes(&scene, &evidence, &params).unwrap();
+        competing.map_or_else(Vec::new, |competing| {
+            reconstruct_facets(&scene, &competing, evidence.ground, &params).0
+        })
+    }
+
+    #[test]
+    fn a_rectangle_is_a_facet_where_half_planes_are_absent() {
+        assert!(facets(&[]).is_empty());
+        // The wrong ones come first, and lose.
+        let proposed = [rectangle(7, 7.5), rectangle(8, 2.5), rectangle(9, ROOF_Z)];
+        let found = facets(&proposed);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].proposals, [ProposalOrigin::Rectangle(9)]);
+        assert!((found[0].plane.z_at(0.0, 0.0) - ROOF_Z).abs() < 0.05);
+        let covered = |p: &Point3<f64>| p.x.abs() < 4.5 && p.y.abs() < 3.5;
+        assert!(found[0].outer.iter().all(covered), "{:?}", found[0].outer);
+    }
+}

@@ -1,0 +1,134 @@
+//! Facets, buildings and their closed solids.
+
+use nalgebra::{Point2, Point3};
+use serde::{Deserialize, Serialize};
+
+use super::uncertainty::FacetUncertainty;
+use crate::base::geometry::{Plane, bounds};
+use crate::base::ids::{BuildingId, FacetId, HalfPlaneId, LineId, ProposalOrigin};
+
+/// Plan positions closer than this are one, metres. Ten times the step in which coordinates are
+/// written, so that no two corners of a solid become equal in a file.
+pub const WELD_M: f64 = 1e-3;
+
+/// A planar roof facet.
+///
+/// Invariants: every ring is simple; the outer one runs counter-clockwise seen from above, holes
+/// clockwise; all corners lie in the plane within 1e-6 m; `plane.normal.z > 0`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct Facet {
+    /// The building that it covers.
+    pub building: BuildingId,
+    /// Its plane, local frame.
+    pub plane: Plane,
+    /// Outer ring, metres, without repeating the first corner.
+    pub outer: Vec<Point3<f64>>,
+    /// Holes, metres.
+    pub holes: Vec<Vec<Point3<f64>>>,
+    /// Mean similarity of the views inside the outline, 0 to 1 (B99 4.3, verification).
+    pub similarity: f64,
+    /// Share of the outline that lies on reconstructed 3D lines: tau_real (B99 4.3).
+    pub real_ratio: f64,
+    /// Probability that it is a roof's face, 0 to 1 ([`crate::base::evidence`]); 1 where nothing weighed
+    /// it.
+    pub probability: f64,
+    /// How well it is known; `None` where the images show too few of its edges.
+    pub uncertainty: Option<FacetUncertainty>,
+    /// The 3D lines in its outline or in its plane.
+    pub lines: Vec<LineId>,
+    /// The half-planes that it was made from.
+    pub half_planes: Vec<HalfPlaneId>,
+    /// What other sources proposed in its plane.
+    pub proposals: Vec<ProposalOrigin>,
+}
+
+impl Facet {
+    /// The part of the plan that it lies in: least and largest x and y, metres.
+    pub fn plan_bounds(&self) -> [Point2<f64>; 2] {
+        bounds(self.outer.iter().map(Point3::xy))
+    }
+
+    /// Area inside the outer ring in plan, square metres.
+    pub fn plan_area(&self) -> f64 {
+        let origin = self.outer.first().map_or(Point2::origin(), Point3::xy);
+        let next = self.outer.iter().cycle().skip(1);
+        let twice =
+            |(a, b): (&Point3<f64>, &Point3<f64>)| (a.xy() - origin).perp(&(b.xy() - origin));
+        0.5 * self.outer.iter().zip(next).map(twice).sum::<f64>()
+    }
+
+    /// Area inside the outer ring on its plane, square metres.
+    pub fn sloped_area(&self) -> f64 {
+        self.plan_area() / self.plane.normal.z
+    }
+}
+
+/// What a face of a solid is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Surface {
+    /// A roof facet.
+    Roof(FacetId),
+    /// A vertical face: an eave extruded to the ground, or a step between roofs.
+    Wall,
+    /// The underside of a roof that overhangs a wall.
+    Ceiling,
+    /// The footprint on the ground.
+    Ground,
+}
+
+/// A planar face of a solid; rings index into [`Solid::vertices`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SolidFace {
+    /// What it is.
+    pub surface: Surface,
+    /// The outer ring (counter-clockwise seen from outside the solid), then holes (clockwise).
+    pub rings: Vec<Vec<u32>>,
+}
+
+/// A closed polyhedron. Invariants: every edge of a ring is run through once in each direction by
+/// the rings of all faces together (closed, oriented 2-manifold); faces are planar within
+/// [`super::PLANAR_M`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Solid {
+    /// Corners, metres, local frame.
+    pub vertices: Vec<Point3<f64>>,
+    /// Faces.
+    pub faces: Vec<SolidFace>,
+}
+
+/// A building: facets that touch in plan, closed by walls and a ground face.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Building {
+    /// Its roof facets.
+    pub facets: Vec<FacetId>,
+    /// Height of the ground below it, metres, local frame.
+    pub ground_z: f64,
+    /// The closed solid.
+    pub solid: Solid,
+}
+
+/// The result of every method.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RoofModel {
+    /// All facets of all buildings.
+    pub facets: Vec<Facet>,
+    /// The buildings.
+    pub buildings: Vec<Building>,
+}
+
+impl RoofModel {
+    /// Probability of a corner of a facet, 0 to 1: that all facets of the building which have it
+    /// are faces of a roof, each taken by itself.
+    pub fn probability_of_corner(&self, building: BuildingId, corner: &Point3<f64>) -> f64 {
+        let has_it = |facet: &&Facet| {
+            let rings = std::iter::once(&facet.outer).chain(&facet.holes);
+            let mut corners = rings.flatten();
+            facet.building == building && corners.any(|p| (p - corner).norm() < WELD_M)
+        };
+        (self.facets.iter().filter(has_it))
+            .map(|facet| facet.probability)
+            .product()
+    }
+}
