@@ -149,7 +149,10 @@ mod tests {
             for step in [-100i8, -3, 0, 64, 127] {
                 let correlation = f64::from(step) / 127.0;
                 let (exact, near) = (table.nats(weight, step), row.nats(correlation));
-                assert!((near - exact).abs() < 1e-6, "{weight} {step}: {near} {exact}");
+                assert!(
+                    (near - exact).abs() < 1e-6,
+                    "{weight} {step}: {near} {exact}"
+                );
             }
             let half = row.nats(64.5 / 127.0);
             let ends = [64, 65].map(|step| table.nats(weight, step));
@@ -158,8 +161,14 @@ mod tests {
         let least = |weight: f64| table.of_weight(weight).least_for();
         let row = table.of_weight(0.985);
         assert!(row.nats(least(0.985)) > 0.0 && row.nats(least(0.985) - 0.01) < 0.0);
-        assert!(least(0.985) > least(0.8), "more is expected of clear texture");
-        assert!(least(0.0) > 1.0, "without texture nothing speaks for a plane");
+        assert!(
+            least(0.985) > least(0.8),
+            "more is expected of clear texture"
+        );
+        assert!(
+            least(0.0) > 1.0,
+            "without texture nothing speaks for a plane"
+        );
     }
 
     #[test]

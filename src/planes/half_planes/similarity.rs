@@ -273,7 +273,10 @@ impl ExpectedCorrelations {
             present: of(&|_, _| 1.0, 0.0),
             weight: of(&|_, weight| weight, 0.0),
             windows: std::array::from_fn(|i| windows.get(i).copied()),
-            high_from: of(&|windows, _| high_correlation(windows, params), f64::INFINITY),
+            high_from: of(
+                &|windows, _| high_correlation(windows, params),
+                f64::INFINITY,
+            ),
         }
     }
 }
