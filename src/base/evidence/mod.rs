@@ -29,7 +29,7 @@ pub use judged::{
 };
 pub(crate) use uncertainty::{Inflation, UncertaintyTable};
 pub(crate) use walls::WallEvidence;
-pub(crate) use windows::WindowEvidenceTable;
+pub(crate) use windows::{WindowEvidenceTable, WindowsOfWeight};
 
 use std::sync::OnceLock;
 
