@@ -31,7 +31,12 @@ impl SourceTree {
         let of_tests: BTreeSet<String> = (modules.values())
             .flat_map(|module| module.of_tests.iter().cloned())
             .collect();
-        modules.retain(|name, _| !of_tests.contains(*name));
+        // With all that stands below them.
+        let is_of_tests = |name: &str| {
+            let above = |end: usize| of_tests.contains(&name[..end]);
+            of_tests.contains(name) || name.match_indices("::").any(|(end, _)| above(end))
+        };
+        modules.retain(|name, _| !is_of_tests(name));
         let mut uses = BTreeMap::new();
         for (name, module) in &modules {
             let targets = module

@@ -1,7 +1,7 @@
 //! Folders as people have them: cameras in subfolders, masks, copies, names from other machines.
 //!
-//! All are the gable house of `ridgeline::orienting::synthetic` at 48 x 48 pixels under other names; whatever
-//! lies beside it, each photograph must get its own camera.
+//! All are the gable house of `ridgeline::orienting::synthetic` at 48 x 48 pixels under other
+//! names; whatever lies beside it, each photograph must get its own camera.
 
 use std::io::Cursor;
 

@@ -36,7 +36,8 @@ use std::sync::OnceLock;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// Share of the cost of a border of a roof where a reconstructed line in one of its planes lies on it.
+/// Share of the cost of a border of a roof where a reconstructed line in one of its planes lies on
+/// it.
 pub(crate) const ON_LINE: f64 = 0.1;
 
 /// What one feature of a candidate says.

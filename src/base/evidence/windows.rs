@@ -100,8 +100,8 @@ pub(crate) struct WindowsOfWeight<'a> {
 }
 
 impl WindowsOfWeight<'_> {
-    /// What a window of this correlation (-1 to 1) says of the plane, nats: linear between the steps
-    /// of the table, so that it changes steadily with an angle.
+    /// What a window of this correlation (-1 to 1) says of the plane, nats: linear between the
+    /// steps of the table, so that it changes steadily with an angle.
     pub(crate) fn nats(&self, correlation: f64) -> f64 {
         let at = ((correlation + 1.0) * 127.0).clamp(0.0, (CORRELATIONS - 1) as f64);
         let below = (at as usize).min(CORRELATIONS - 2);

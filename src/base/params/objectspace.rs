@@ -30,9 +30,9 @@ pub struct PlaneParams {
     pub max_width_m: f64,
     /// Planes whose middle is lower than this above the ground are no roofs, metres. Assumption.
     pub min_height_m: f64,
-    /// Natural logarithm of the odds from which on a plane is a candidate ([`crate::base::evidence`]):
-    /// even ones, where W96 accepts any best plane and proposes "thresholding the measure". `make
-    /// calibrate` sees every candidate by a very low one.
+    /// Natural logarithm of the odds from which on a plane is a candidate
+    /// ([`crate::base::evidence`]): even ones, where W96 accepts any best plane and proposes
+    /// "thresholding the measure". `make calibrate` sees every candidate by a very low one.
     pub least_nats: f64,
     /// Smallest plane, square metres. Assumption.
     pub min_area_m2: f64,

@@ -3,8 +3,8 @@
 //! B99 5 asks for "a probabilistic framework" to "compute a posterior estimate for the plane angle
 //! and the likelihood that a plane is there"; this is ours.
 //!
-//! **One window.** What its correlation says of a plane follows from its texture: the fitted table of
-//! [`crate::base::evidence`], the same for every stage that compares windows. Nothing where the
+//! **One window.** What its correlation says of a plane follows from its texture: the fitted table
+//! of [`crate::base::evidence`], the same for every stage that compares windows. Nothing where the
 //! texture drowns in noise, and no more than two nats against the plane from one that does not lie
 //! on it (a chimney, the next facet).
 //!

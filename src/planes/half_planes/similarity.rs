@@ -291,8 +291,8 @@ fn lanes(value: impl Fn(usize) -> f64) -> f64x4 {
     f64x4::new(std::array::from_fn(value))
 }
 
-/// The correlation from which on a site counts as high: where it speaks for the plane, if noise keeps
-/// that below the usual, unless the printed thresholds alone decide.
+/// The correlation from which on a site counts as high: where it speaks for the plane, if noise
+/// keeps that below the usual, unless the printed thresholds alone decide.
 fn high_correlation(windows: &WindowsOfWeight, params: &SweepParams) -> f64 {
     match params.acceptance {
         Acceptance::Printed => params.high_correlation,

@@ -9,9 +9,9 @@
 //!   - sum over the sides of  length (what a border costs, less where image lines support it)
 //! ```
 //!
-//! in nats: by how much the energy of the labelling ([`crate::roofs::facets`]) is lower with the plane
-//! than without it. A gap between two roofs speaks against a plane over both. Whether a polygon is
-//! likelier true than false is asked of the model of evidence ([`PlaneFeatures`]):
+//! in nats: by how much the energy of the labelling ([`crate::roofs::facets`]) is lower with the
+//! plane than without it. A gap between two roofs speaks against a plane over both. Whether a
+//! polygon is likelier true than false is asked of the model of evidence ([`PlaneFeatures`]):
 //!
 //! * radiometry, the paper's criterion that "the area ... inside the 3D plane should be
 //!   radiometrically homogeneous over all images": what the correlation windows say of the plane,
