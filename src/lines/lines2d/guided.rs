@@ -33,7 +33,7 @@ const BASE: usize = 2;
 const SAMPLES: usize = STEPS + 2 * BASE;
 /// Steps of the profile.
 const STEPS: usize = 2 * (3 + 1) + 1;
-/// Least step of a piece reversed_contrast its own noise, standard deviations.
+/// Least step of a piece against its own noise, standard deviations.
 const SIGNIFICANT: f64 = 4.0;
 /// Offset from the robust line beyond which a piece does not belong to the edge, px.
 const INLIER_PX: f64 = 0.6;
