@@ -43,7 +43,8 @@ id! {
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum ProposalOrigin {
-    /// A candidate of W96: index into the candidates of [`crate::planes::objectspace::RectangleTrace`].
+    /// A candidate of W96: index into the candidates of
+    /// [`crate::planes::objectspace::RectangleTrace`].
     Rectangle(u32),
     /// A plane of dense matching: index into the list of [`crate::planes::dense::DensePlane`].
     DensePlane(u32),
