@@ -7,11 +7,12 @@
 #   make lint       format, clippy (native and wasm32), Biome, TypeScript
 #   make identical  the demo and the synthetic scenes natively and in wasm, compared byte for byte
 #   make golden     rewrite what the tests expect to be found in the synthetic scenes (tests/golden)
-#   make score      all scenes against their truth; rewrites the tables of docs/results.md
-#   make kills      a block under Snakemake, KILLS (20) processes killed at random moments by SEED (1): the same bytes
+#   make score      all scenes against their truth; writes docs/results.md
+#   make interrupt  a block under Snakemake, interrupted TIMES (20) at random moments by SEED (1): the same bytes
 #   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
 #   make jury       all scenes many times over, changed a little each time; rewrites its tables there
-#   make judge      SEEDS (as "518 to 530") of random scenes that chose nothing; BEFORE=PROGRAM compares in pairs
+#   make judge      SEEDS (as "518 to 530") of random scenes that chose nothing; BEFORE=PROGRAM compares in pairs, PAGE=1
+#                   rewrites the section of docs/results.md
 #   make calibrate  fits the tables of src/base/evidence to scenes with truth, PYTHON (python3) with numpy, scipy, shapely, Pillow
 #   make bench      time and memory of every stage, against the commit BEFORE in pairs, beside other programs, and
 #                   how they grow; SCENE (SCENES/suburb), ROUNDS (5), FLIGHT; rewrites docs/bench.md
@@ -20,11 +21,11 @@
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: demo test build lint identical golden score jury judge calibrate bench kills fuzz native setup clean
+.PHONY: demo test build lint identical golden score jury judge calibrate bench interrupt fuzz native setup clean
 
 # Small programs of our own on the crates of wasm-bindgen and wasm-pack, kept for all clones that have the same ones.
 CACHE := $(or $(RIDGELINE_CACHE),$(HOME)/.cache/ridgeline)
-TOOLS := $(CACHE)/tools/$(shell find tools -type f | sort | xargs cat | cksum | tr ' ' '-')
+TOOLS := $(CACHE)/tools/$(shell find www/tools -type f | sort | xargs cat | cksum | tr ' ' '-')
 WASM_BINDGEN := $(TOOLS)/wasm-bindgen
 WASM_PACK := $(TOOLS)/wasm-pack
 # Beside each other: that is where wasm-pack looks for the test runner.
@@ -35,7 +36,7 @@ WASM32 := $(STAMPS)/wasm32-$(shell rustc --version | cut -d ' ' -f 2)
 NPM := www/node_modules/.installed-$(shell cksum < www/package-lock.json | tr ' ' '-')
 RUST_SOURCES := $(shell find src -name '*.rs') Cargo.toml Cargo.lock .cargo/config.toml
 WWW_SOURCES := $(shell find www -type f -not -name '*.tsbuildinfo' -not -path 'www/node_modules/*' \
-	-not -path 'www/dist/*' -not -path 'www/src/pkg*' -not -path 'www/public/entrance/*' -not -path 'www/test*' -not -path 'www/screenshots/*' \
+	-not -path 'www/dist/*' -not -path 'www/src/pkg*' -not -path 'www/public/entrance/*' -not -path 'www/test*' -not -path 'www/tools/*' -not -path 'www/screenshots/*' \
 	-not -path 'www/playwright-report/*')
 PACKAGE := www/src/pkg/ridgeline_bg.wasm
 # The page's second module: the same crate without the rooms above src/orienting/structure_from_motion.
@@ -59,39 +60,36 @@ lint: $(WASM32) $(NPM) $(PACKAGE) $(ORIENTATION)
 
 identical: native $(PACKAGE) $(ORIENTATION)
 	cargo build --release --example synthetic
-	node tests/identical.mjs target/release/ridgeline
+	node tests/wasm/identical.mjs target/release/ridgeline
 
 golden:
 	RIDGELINE_REWRITE=1 cargo test --test pipeline golden
 	RIDGELINE_REWRITE=1 cargo test --lib page_table
 
 score: native
-	python3 tests/score_table.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
+	$(PYTHON) tests/evaluation/score_table.py --self-test
+	$(PYTHON) tests/evaluation/score_table.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
 
 jury: native
-	python3 tests/jury.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
+	$(PYTHON) tests/evaluation/perturb.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
 
 judge: native
-	$(PYTHON) tests/judge.py --binary target/release/ridgeline $(if $(BEFORE),--before $(BEFORE)) --seeds $(SEEDS)
+	$(PYTHON) tests/evaluation/compare_on_seeds.py --binary target/release/ridgeline $(if $(BEFORE),--before $(BEFORE)) --seeds $(SEEDS) $(if $(PAGE),--page)
 
 calibrate: native
-	$(PYTHON) tests/calibrate.py --self-test
-	$(PYTHON) tests/clutter.py --self-test
-	$(PYTHON) tests/corners.py --self-test
-	$(PYTHON) tests/calibrate.py --binary target/release/ridgeline --fit "$${FIT:-../shared/fit}" \
+	$(PYTHON) tests/evaluation/calibrate.py --self-test
+	$(PYTHON) tests/evaluation/calibrate.py --binary target/release/ridgeline --fit "$${FIT:-../shared/fit}" \
 		--more "$${SCENES:-../shared/scenes}"
-	$(PYTHON) tests/clutter.py --scenes "$${FIT:-../shared/fit}"
-	$(PYTHON) tests/corners.py --scenes "$${FIT:-../shared/fit}"
 
 bench: native $(PACKAGE)
-	$(PYTHON) tests/bench.py --self-test
-	$(PYTHON) tests/bench.py --binary target/release/ridgeline $(if $(BEFORE),--before $(BEFORE)) \
+	$(PYTHON) tests/evaluation/bench.py --self-test
+	$(PYTHON) tests/evaluation/bench.py --binary target/release/ridgeline $(if $(BEFORE),--before $(BEFORE)) \
 		$(if $(SCENE),--scene $(SCENE)) --rounds $(or $(ROUNDS),5) --scenes "$${SCENES:-../shared/scenes}" \
 		--flight "$${FLIGHT:-../shared/flights/sheffield}"
 
-kills: native
+interrupt: native
 	cargo build --release --example synthetic
-	$(PYTHON) tests/cluster.py --binary target/release/ridgeline --kills $(or $(KILLS),20) --seed $(or $(SEED),1)
+	$(PYTHON) tests/evaluation/interrupted_block.py --binary target/release/ridgeline --times $(or $(TIMES),20) --seed $(or $(SEED),1)
 
 fuzz:
 	RIDGELINE_FUZZ_SECONDS=$${FUZZ_SECONDS:-600} cargo test --release --test fuzz -- --nocapture --test-threads 1
@@ -129,7 +127,7 @@ $(ORIENTATION): $(PACKAGE)
 	wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@D) orientation
 
 # What the page shows before anything is computed in the browser: the demo scene's model, made by the page's own core.
-$(ENTRANCE): $(PACKAGE) www/scripts/entrance.mjs tests/session.mjs $(shell find www/public/demo -type f)
+$(ENTRANCE): $(PACKAGE) www/scripts/entrance.mjs tests/wasm/session.mjs $(shell find www/public/demo -type f)
 	node www/scripts/entrance.mjs
 
 $(SITE): $(PACKAGE) $(ORIENTATION) $(ENTRANCE) $(NPM) $(WWW_SOURCES)
@@ -145,11 +143,11 @@ $(WASM32):
 
 # wasm and program must speak of the same wasm-bindgen.
 VERSION_OF = $(shell sed -nE 's/^$(1) = .*"=([0-9.]+)".*/\1/p' $(2))
-SAME_VERSION = test "$(call VERSION_OF,wasm-bindgen,Cargo.toml)" = "$(call VERSION_OF,wasm-bindgen-cli-support,tools/Cargo.toml)" \
-	|| { echo "wasm-bindgen is of another version in Cargo.toml than in tools/Cargo.toml" >&2; exit 1; }
+SAME_VERSION = test "$(call VERSION_OF,wasm-bindgen,Cargo.toml)" = "$(call VERSION_OF,wasm-bindgen-cli-support,www/tools/Cargo.toml)" \
+	|| { echo "wasm-bindgen is of another version in Cargo.toml than in www/tools/Cargo.toml" >&2; exit 1; }
 
 # From source: the download pages of ready-made programs are not reachable everywhere. RUSTFLAGS= makes them fit any processor.
-BUILD_TOOL = RUSTFLAGS= cargo build --locked --manifest-path tools/Cargo.toml --target-dir target/tools
+BUILD_TOOL = RUSTFLAGS= cargo build --locked --manifest-path www/tools/Cargo.toml --target-dir target/tools
 
 $(WASM_BINDGEN):
 	@$(SAME_VERSION)
@@ -169,5 +167,5 @@ $(NPM):
 
 # Debian as root: the system's own package. Elsewhere: Playwright's browser. CHROMIUM names another one.
 $(STAMPS)/chromium: $(NPM)
-	tests/install_chromium.sh
+	www/scripts/install_chromium.sh
 	touch $@

@@ -39,25 +39,19 @@
 //! 3D-structures in multiple aerial images using lines and regions").
 //!
 //! ```text
-//! images + orientation files (or structure_from_motion, where there are none)
-//!    -> orientation, camera, scene_loader   Scene { views, ground }; known: terrain, footprints
-//!    -> lines2d                  edgels, chains, segments (per view)          B99 3.2
-//!    -> linematch                pairs, triples, tracks over N views          B99 3.1 - 3.4
-//!    -> lines3d                  3D lines with covariance                     B99 3.2, figure 4
-//!    -> adjustment               single views adjusted to these, and matched again
-//!    -> terrain                  the ground
-//!    -> planes                   sources: half-planes by Sim(theta), and others   B99 4.1, 2
-//!                                groups and plane hypotheses                  B99 4.2
-//!    -> facets                   borders, labelling, verification             B99 4.3
-//!    or, from the images to the roofs in one go
-//!    -> objectspace              regions, directions, clusters, rectangles    W96 3.3 - 3.6
-//!    or both for one model: lines and planes of objectspace compete with the others
-//!    -> buildings, solids        refined wireframes, walls, closed solids
-//!    -> corrections              what somebody corrects by hand
-//!    -> walls                    where they stand below overhanging eaves
-//!    -> texture                  best view per face, atlas
-//!    -> export                   CityJSON, glTF, OBJ, lines
+//! base          numbers, geometry, parameters, evidence in nats
+//! photographs   pixels and cameras
+//! orienting     files into a Scene { views, known }; photographs alone into their orientation
+//! lines         lines2d -> linematch -> lines3d -> adjustment              B99 3
+//! planes        terrain; half_planes -> grouping -> hypotheses             B99 4.1, 4.2
+//!               dense, coplanar, adjacency                                 B99 2
+//!               objectspace: regions, directions, clusters, rectangles     W96 3.3 - 3.6
+//! roofs         facets -> buildings, solids -> corrections -> walls        B99 4.3, 2
+//! results       texture -> export, roof_report, figures
+//! pipeline      the order of the stages;  tiles: large areas in pieces
 //! ```
+//!
+//! A group calls the groups above it in this list, never those below.
 //!
 //! Each stage is one function from typed input to `(value, trace)`; the trace holds what a figure
 //! of it shows, and why each hypothesis was rejected. [`pipeline`] alone orders the stages.

@@ -58,7 +58,7 @@ finished() {
 
 www() { (cd www && npm run --silent "$@"); }
 
-formatted() { cargo fmt --all --check && cargo fmt --all --check --manifest-path tools/Cargo.toml; }
+formatted() { cargo fmt --all --check && cargo fmt --all --check --manifest-path www/tools/Cargo.toml; }
 
 # With the page's profile, which has its derives compiled already; both modules of the page.
 clippy_wasm32() {
@@ -77,7 +77,7 @@ step clippy-wasm32 check finished clippy-wasm32
 if [ "${1:-all}" = all ]; then
     step native cargo cargo test --quiet
     # One core is enough for it.
-    start identical node tests/identical.mjs target/debug/ridgeline
+    start identical node tests/wasm/identical.mjs target/debug/ridgeline
     step doc check env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet
     step wasm cargo wasm-pack test --node --mode no-install tests/wasm --profile page
     step typescript node www test:unit
@@ -85,7 +85,7 @@ if [ "${1:-all}" = all ]; then
     step identical check finished identical
     # Named, so that the comparison with it is not skipped.
     export RIDGELINE=$PWD/target/debug/ridgeline
-    step cluster check "${PYTHON:-python3}" tests/cluster.py --binary target/debug/ridgeline
+    step interrupt check "${PYTHON:-python3}" tests/evaluation/interrupted_block.py --binary target/debug/ridgeline
     step page playwright www test:e2e
 fi
 

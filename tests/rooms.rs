@@ -2,6 +2,7 @@
 //! round. No files of a room use each other in a circle either, no file is long, no folder crowded.
 #![cfg(not(target_arch = "wasm32"))]
 
+#[path = "common/source_tree.rs"]
 mod source_tree;
 
 use std::collections::BTreeMap;

@@ -1,5 +1,6 @@
 //! `ridgeline plan`, `tile` and `join`: a large area on many machines. What hands the tiles out,
-//! repeats and resumes is an engine of its own (`cluster/`); each command is one step for it.
+//! repeats and resumes is an engine of its own (`examples/cluster`); each command is one step for
+//! it.
 
 use std::fs;
 use std::path::Path;

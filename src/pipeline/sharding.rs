@@ -1,6 +1,6 @@
 //! What passes between the instances that divide a run between them: views of the scene, results of
-//! earlier stages, and the shards of a stage's maps. See [`crate::base::execution::shard`] for the order
-//! of things.
+//! earlier stages, and the shards of a stage's maps. See [`crate::base::execution::shard`] for the
+//! order of things.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

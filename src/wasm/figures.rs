@@ -1,5 +1,5 @@
-//! What the page's live figures ask of a project: traces, and [`crate::results::figures`] where the reader
-//! points.
+//! What the page's live figures ask of a project: traces, and [`crate::results::figures`] where the
+//! reader points.
 
 use std::borrow::Cow;
 

@@ -3,6 +3,7 @@
 #![cfg(not(target_arch = "wasm32"))] // The independent readers are native crates.
 #![allow(clippy::unwrap_used)]
 
+mod broken_solids;
 mod city;
 mod glb;
 mod meshes;

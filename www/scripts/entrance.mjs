@@ -1,10 +1,10 @@
 // What the entrance shows before anything is computed in the browser: the demo scene's model, and the ground below it as
 // one of its photographs shows it. Run with the build, by the same core that the page runs.
 //
-//   node scripts/entrance.mjs        needs src/pkg; writes public/entrance/
+//   node www/scripts/entrance.mjs        needs www/src/pkg; writes www/public/entrance/
 
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
-import { addFiles, openSession, root } from "../../tests/session.mjs";
+import { addFiles, openSession, root } from "../../tests/wasm/session.mjs";
 
 const OUT = new URL("../public/entrance/", import.meta.url);
 const DEMO = `${root}/www/public/demo`;

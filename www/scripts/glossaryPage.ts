@@ -1,5 +1,5 @@
 /** docs/glossary.md: all terms as Markdown, for `npm run lists`. */
-import { IN_ORDER, TERMS, type Term } from "../src/app/glossary/terms";
+import { IN_ORDER, TERMS, type Term } from "../src/app/words/terms";
 
 export function glossaryPage(): string {
   const terms: Readonly<Record<string, Term>> = TERMS;
@@ -12,7 +12,7 @@ export function glossaryPage(): string {
   return `# Glossary
 
 The terms of the field that the page and the exercises use. They are linked where they stand there. This page is written by
-\`npm run lists\` (in www/) from [terms.ts](../www/src/app/glossary/terms.ts). B99 and W96 are the papers of the
+\`npm run lists\` (in www/) from [terms.ts](../www/src/app/words/terms.ts). B99 and W96 are the papers of the
 [README](../README.md).
 
 ${rows.join("\n")}`;

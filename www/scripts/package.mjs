@@ -1,5 +1,5 @@
-// The npm package: compiles src/package, builds the element, puts the wasm core and the demo scene beside them and packs all.
-// Prints the tarball's path. The core is the one in src/pkg (make build for the smallest).
+// The npm package: compiles www/src/package, builds the element, puts the wasm core and the demo scene beside them and packs all.
+// Prints the tarball's path. The core is the one in www/src/pkg (make build for the smallest).
 import { execFileSync } from "node:child_process";
 import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";

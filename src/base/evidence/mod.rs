@@ -9,10 +9,11 @@
 //!
 //! That is an additive logistic model (Hastie and Tibshirani 1986), whose curves are piecewise
 //! linear. `make calibrate` fits them to scenes of which the truth is known; the tables beside this
-//! file are its output and name their scenes. A candidate lives where its odds are better than
-//! even, and the probability that is stated of it follows from the same number.
+//! file are its output and name their scenes. A candidate lives from `least_nats` of its stage on:
+//! even odds, and three to one for the lines of the finished model. The probability that is stated
+//! of it follows from the same number.
 //!
-//! Invariant: no threshold here or in what calls this but even odds; the calibration alone sets
+//! Invariant: no other threshold here or in what calls this; the calibration alone sets
 //! `least_nats` so low that every candidate is seen.
 
 mod clutter;
@@ -29,14 +30,15 @@ pub use judged::{
 };
 pub(crate) use uncertainty::{Inflation, UncertaintyTable};
 pub(crate) use walls::WallEvidence;
-pub(crate) use windows::WindowEvidenceTable;
+pub(crate) use windows::{WindowEvidenceTable, WindowsOfWeight};
 
 use std::sync::OnceLock;
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// Share of the cost of a border of a roof where a reconstructed line in one of its planes lies on it.
+/// Share of the cost of a border of a roof where a reconstructed line in one of its planes lies on
+/// it.
 pub(crate) const ON_LINE: f64 = 0.1;
 
 /// What one feature of a candidate says.

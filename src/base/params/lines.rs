@@ -176,8 +176,8 @@ pub struct MatchParams {
     /// Least number of such edgels. B99 3.2: "the minimum is 15 edgels", relaxed to 10 in 4.1 where
     /// planes are built on the lines. Deviation: the line's evidence decides.
     pub min_edgels: usize,
-    /// Least score of a pair, see [`crate::lines::linematch::EdgelScore`]. Assumption: the paper gives no
-    /// value; pairs below are too many to be worth a third view.
+    /// Least score of a pair, see [`crate::lines::linematch::EdgelScore`]. Assumption: the paper
+    /// gives no value; pairs below are too many to be worth a third view.
     pub pair_score: f64,
     /// Share of `pair_score` required of a third view with a segment at the predicted position. B99
     /// 3.2: "about 50% of its value".
@@ -214,8 +214,8 @@ pub struct MatchParams {
     /// Largest number of views that a view is matched with. Assumption: keeps the work linear in
     /// the number of views.
     pub max_partners: usize,
-    /// Natural logarithm of the odds from which on a line is true ([`crate::base::evidence`]): even ones.
-    /// `make calibrate` sees every candidate by a very low one.
+    /// Natural logarithm of the odds from which on a line is true ([`crate::base::evidence`]): even
+    /// ones. `make calibrate` sees every candidate by a very low one.
     pub least_nats: f64,
     /// Heights between which lines are sought, metres in the scene's frame; estimated where `None`.
     pub z_range_m: Option<[f64; 2]>,

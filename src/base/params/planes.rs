@@ -144,8 +144,8 @@ pub struct RoofParams {
     /// No eave is lower than this above the ground, metres. Assumption: that of a low garage, less
     /// the error of the ground's height.
     pub min_height_m: f64,
-    /// Natural logarithm of the odds from which on a facet is true ([`crate::base::evidence`]): even
-    /// ones. `make calibrate` sees every candidate by a very low one.
+    /// Natural logarithm of the odds from which on a facet is true ([`crate::base::evidence`]):
+    /// even ones. `make calibrate` sees every candidate by a very low one.
     pub least_nats: f64,
     /// Regularisation and refinement of the buildings.
     pub refine: RefineParams,

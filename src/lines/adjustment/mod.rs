@@ -6,9 +6,9 @@
 //! ```
 //!
 //! r are the whitened offset and angle between a measured edge and the image of its line, and rho
-//! is Cauchy's loss, both as in [`crate::lines::lines3d`]. A free view has six unknowns, a rotation about
-//! its centre and a shift. The priors separate the two, which have nearly the same effect on a crop
-//! of a frame.
+//! is Cauchy's loss, both as in [`crate::lines::lines3d`]. A free view has six unknowns, a rotation
+//! about its centre and a shift. The priors separate the two, which have nearly the same effect on
+//! a crop of a frame.
 //!
 //! Common changes of all views that only deform the object space are nearly unobservable, and
 //! adjusting all views at once would degrade sound orientations. Therefore views are freed one by

@@ -4,10 +4,11 @@
 //! significance ([`super::significance`]) replaces a global threshold of contrast.
 //!
 //! B99 has grey photographs. Where there is colour, the same detector also runs on the red-blue
-//! difference ([`crate::photographs::raster::RedBlueDifference`]), and its segments count where no edge in grey
-//! values runs along them: on six views of a rendered suburb the segments then cover 81 % of the
-//! true roof edges instead of 62 %. Each kind is matched with its own, in its own channel, because
-//! lines of both together lay up to 0.2 m off on photographs with chromatic aberration.
+//! difference ([`crate::photographs::raster::RedBlueDifference`]), and its segments count where no
+//! edge in grey values runs along them: on six views of a rendered suburb the segments then cover
+//! 81 % of the true roof edges instead of 62 %. Each kind is matched with its own, in its own
+//! channel, because lines of both together lay up to 0.2 m off on photographs with chromatic
+//! aberration.
 //!
 //! The accuracy of a segment is limited by the roof, not by the image: along true edges of two
 //! rendered scenes, the steepest place of the mean profile itself scatters by 0.2 to 0.3 px on

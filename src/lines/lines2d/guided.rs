@@ -6,8 +6,8 @@
 //! measured along the prediction: the profile across it is averaged over short pieces, so that a
 //! step far below the noise of a pixel shows, each piece gives one offset, and a robust line
 //! through the offsets is the measurement. Grey values decide whether there is an edge, linear
-//! light where it is ([`crate::photographs::raster::Channel::to_linear_light`]). A view in which the pieces do
-//! not line up has no edge there.
+//! light where it is ([`crate::photographs::raster::Channel::to_linear_light`]). A view in which
+//! the pieces do not line up has no edge there.
 //!
 //! Deviation: the paper verifies a view without a segment by correlation alone. Correlation says
 //! that the surroundings are alike, not where the line is; a measured offset takes part in the
@@ -33,7 +33,7 @@ const BASE: usize = 2;
 const SAMPLES: usize = STEPS + 2 * BASE;
 /// Steps of the profile.
 const STEPS: usize = 2 * (3 + 1) + 1;
-/// Least step of a piece reversed_contrast its own noise, standard deviations.
+/// Least step of a piece against its own noise, standard deviations.
 const SIGNIFICANT: f64 = 4.0;
 /// Offset from the robust line beyond which a piece does not belong to the edge, px.
 const INLIER_PX: f64 = 0.6;

@@ -58,8 +58,8 @@ pub struct Line3d {
     /// Covariance of the start and of the end point across the line, m^2 (3 x 3 each; zero along
     /// the line).
     pub covariance: [Matrix3<f64>; 2],
-    /// Probability that there is an edge in space, 0 to 1 ([`crate::base::evidence`]); 1 where nothing
-    /// weighed it.
+    /// Probability that there is an edge in space, 0 to 1 ([`crate::base::evidence`]); 1 where
+    /// nothing weighed it.
     pub probability: f64,
     /// The views that support it.
     pub supports: Vec<LineSupport>,

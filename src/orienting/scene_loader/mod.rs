@@ -1,5 +1,5 @@
-//! From files in memory to a [`Scene`](crate::orienting::scene::Scene): what the command line and the page
-//! hand over.
+//! From files in memory to a [`Scene`](crate::orienting::scene::Scene): what the command line and
+//! the page hand over.
 //!
 //! ```text
 //! archive, project   files of a .zip; a project's files and options

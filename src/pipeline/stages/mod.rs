@@ -4,9 +4,10 @@
 //! [`StageDefinition`] with its name, the stages it needs, the parameters it reads, its sharded
 //! maps, how it runs, how it is summarised, and which planes it proposes); add `mod` and a line at
 //! its place in the table below; run `make golden`, which writes the table that the page reads.
-//! Everything else follows from the table: the order, what is out of date after a change of
-//! parameters, what workers are given, the reports. Which stages run follows from the sources of
-//! planes; a new source is a line in `params/sources.rs`, too.
+//! On the page, what it is to fetch and show is a folder, `www/src/stages/<name>`. Everything else
+//! follows from the table: the order, what is out of date after a change of parameters, what
+//! workers are given, the reports. Which stages run follows from the sources of planes; a new
+//! source is a line in `params/sources.rs`, too.
 //!
 //! Invariant: no file of a stage knows another one; they meet in [`Results`].
 

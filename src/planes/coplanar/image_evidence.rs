@@ -1,8 +1,8 @@
 //! Back-projection: what the photographs say of a polygon in a plane (B99 2), in nats.
 //!
-//! It is the energy of [`crate::roofs::facets`] for one facet alone: the windows inside are compared in
-//! all views, and each metre of the outline costs what a border costs there, a tenth of it where
-//! the views show an edge. So a polygon is verified by the same numbers that decide later.
+//! It is the energy of [`crate::roofs::facets`] for one facet alone: the windows inside are
+//! compared in all views, and each metre of the outline costs what a border costs there, a tenth of
+//! it where the views show an edge. So a polygon is verified by the same numbers that decide later.
 
 use nalgebra::{Point2, Point3};
 

@@ -10,7 +10,8 @@
 //! ```
 //!
 //! rho is Cauchy's loss. Gauss-Newton; the derivatives of edges are those of a line fit
-//! ([`crate::lines::lines3d`]), carried over from the ends of the side to the plane and its corners.
+//! ([`crate::lines::lines3d`]), carried over from the ends of the side to the plane and its
+//! corners.
 
 use nalgebra::{DMatrix, DVector, Point2, Point3, Vector2, Vector3};
 use serde::Serialize;

@@ -3,8 +3,8 @@
 //!
 //! B99 5: "an efficient and robust approach would use both" half-planes and coplanar lines. Two
 //! neighbouring lines that span a plane propose it; the photo-consistency beside them decides
-//! ([`crate::planes::hypotheses::hypothesis`]). Lines that are neighbours around a corner only are paired where
-//! the sweep found no half-plane between them.
+//! ([`crate::planes::hypotheses::hypothesis`]). Lines that are neighbours around a corner only are
+//! paired where the sweep found no half-plane between them.
 
 use super::coplanarity::{all_lie_in, fit_plane, lies_in_plane};
 use super::growth::{extend, infer_sides};

@@ -7,6 +7,7 @@
 //! Tried without gain: to measure the lines that stay again in all views, as borders of facets are.
 //! Edges that only regions show are weak, and what lies along one is often another.
 
+use super::clusters::{END_PX, LEAST_COVERAGE, PARALLEL_DEG};
 use super::oris::RegionLine;
 use super::stages::{FoundLine, world_lines};
 use crate::base::geometry::{Segment2, Segment3};
@@ -39,7 +40,7 @@ fn is_new(line: &Line3d, open: &[Vec<f64>], params: &ClusterParams) -> bool {
     let views = line.supports.iter().filter(|s| {
         let own = s.segments.iter();
         let own = own.map(|id| open[s.view.index()][id.index()]);
-        own.sum::<f64>() >= params.min_coverage * s.stretch.length()
+        own.sum::<f64>() >= LEAST_COVERAGE * s.stretch.length()
     });
     views.count() >= params.min_views
 }
@@ -71,8 +72,8 @@ fn projected(scene: &Scene, view: ViewId, line: &Segment3) -> Option<Segment2> {
 /// The length of an image line beside which none of the others runs, pixels.
 fn open_length(line: &Segment2, others: &[Segment2], params: &ClusterParams) -> f64 {
     // A short line's direction is as uncertain as its ends.
-    let of_ends = params.end_px / line.length().max(1e-9);
-    let sine = of_ends.max(crate::base::math::sin(params.angle_deg.to_radians()));
+    let of_ends = END_PX / line.length().max(1e-9);
+    let sine = of_ends.max(crate::base::math::sin(PARALLEL_DEG.to_radians()));
     let direction = line.direction();
     let parallel = |o: &&Segment2| o.direction().perp(&direction).abs() < sine;
     let beside: Vec<&Segment2> = others.iter().filter(parallel).collect();

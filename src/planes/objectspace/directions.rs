@@ -19,6 +19,11 @@ use super::image_lines::ImageLine;
 use crate::base::math::{atan2, exp, ln, sin_cos};
 use crate::base::params::DirectionParams;
 
+/// A line within this of a direction follows it, degrees. Assumption.
+const TOLERANCE_DEG: f64 = 2.0;
+/// Pairs are at least so far apart, degrees. Assumption.
+const APART_DEG: f64 = 6.0;
+
 /// A pair of perpendicular horizontal directions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
@@ -75,14 +80,14 @@ fn directions_of(
         .collect();
     let mut found: Vec<MainDirections> = Vec::new();
     let bin = std::f64::consts::PI / BINS as f64;
-    let apart = (params.apart_deg.to_radians() / bin) as usize;
+    let apart = (APART_DEG.to_radians() / bin) as usize;
     while found.len() < params.max_pairs {
         let best = (0..free.len()).max_by(|&a, &b| free[a].total_cmp(&free[b]).then(b.cmp(&a)));
         let Some(best) = best.filter(|&b| free[b] > 0.0) else {
             break;
         };
         let azimuth = refined((best as f64 + 0.5) * bin, cuts);
-        let share = share(azimuth, cuts, params.tolerance_deg.to_radians()) / total;
+        let share = share(azimuth, cuts, TOLERANCE_DEG.to_radians()) / total;
         if share < params.min_share {
             break;
         }
@@ -102,11 +107,11 @@ fn directions_of(
 
 /// Share of the weight of the lines that points along an azimuth (radians) or at right angles to
 /// it.
-pub(super) fn share_of(lines: &[ImageLine], along: f64, params: &DirectionParams) -> f64 {
+pub(super) fn share_of(lines: &[ImageLine], along: f64) -> f64 {
     let cuts: Vec<[f64; 2]> = lines.iter().filter_map(azimuth).collect();
     let total: f64 = cuts.iter().map(|c| c[1]).sum();
     match total > 0.0 {
-        true => share(along, &cuts, params.tolerance_deg.to_radians()) / total,
+        true => share(along, &cuts, TOLERANCE_DEG.to_radians()) / total,
         false => 0.0,
     }
 }

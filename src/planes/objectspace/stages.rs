@@ -28,7 +28,7 @@ pub fn find_regions(
     params: &ObjectSpaceParams,
 ) -> Sharded<(Vec<Vec<RegionLine>>, Vec<Segmentation>)> {
     let per_view = sharded_map("views", &scene.views, 0.0..1.0, |_, view| {
-        let image = ColorImage::new(&view.gray, &view.rgb, params.oris.smoothing_px);
+        let image = ColorImage::new(&view.gray, &view.rgb);
         let segmentation = segment_regions(&image, &params.oris);
         (
             region_lines(&image, &segmentation, &params.oris),

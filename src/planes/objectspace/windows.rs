@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::clusters::{ClusterLine, cluster_lines};
+use super::clusters::{ClusterLine, SIGMA_PX, cluster_lines};
 use super::directions::{
     DirectionTrace, MainDirections, MeasuredAzimuth, directions_by_length, main_directions,
     share_of,
@@ -24,6 +24,15 @@ use crate::base::math::atan2;
 use crate::base::params::ObjectSpaceParams;
 use crate::orienting::scene::Scene;
 use crate::planes::terrain::Ground;
+
+/// Side of the tiles in which buildings are sought, metres. Assumption: a house with its
+/// surroundings.
+const TILE_M: f64 = 24.0;
+/// Lines of a building are linked over this distance in plan, metres. Assumption: the depth of
+/// a facet; closer than most houses stand.
+const LINK_M: f64 = 6.0;
+/// The window reaches beyond the lines by this, metres. Assumption: lines that were not found.
+const MARGIN_M: f64 = 4.0;
 
 /// A part of the ground plan that is analysed on its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -91,8 +100,8 @@ pub(crate) fn find_windows(
         .collect();
     if given.is_empty() {
         let raised = raised_lines(scene, image_lines, z_range_m, params)?;
-        let group = groups(&raised, params.windows.link_m);
-        windows = windows_of(&raised, &group, z_range_m, params.windows.margin_m);
+        let group = groups(&raised, LINK_M);
+        windows = windows_of(&raised, &group, z_range_m, MARGIN_M);
         let segments = raised.iter().map(|l| l.segment);
         trace.lines = segments.zip(group).collect();
     }
@@ -101,7 +110,7 @@ pub(crate) fn find_windows(
         let (found, histogram) = main_directions(&inside, &params.directions);
         if given.is_empty() {
             for pair in &mut w.directions {
-                pair.share = share_of(&inside, pair.azimuth, &params.directions);
+                pair.share = share_of(&inside, pair.azimuth);
             }
         } else {
             w.directions = found;
@@ -134,7 +143,7 @@ fn raised_lines(
     z_range_m: [f64; 2],
     params: &ObjectSpaceParams,
 ) -> Sharded<Vec<TileLine>> {
-    let tiles = tiles(image_lines, z_range_m, params.windows.tile_m);
+    let tiles = tiles(image_lines, z_range_m, TILE_M);
     let per_tile = sharded_map("tiles", &tiles, 0.2..1.0, |_, tile| {
         tile_lines(scene, image_lines, tile, params)
     })?;
@@ -209,7 +218,7 @@ fn tile_lines(
             let supports: Vec<&ImageLine> = line.supports.iter().map(|&k| &inside[k]).collect();
             let segment = line.segment;
             let start = azimuth(&segment);
-            let azimuth = MeasuredAzimuth::of_line(start, &supports, params.clusters.sigma_px)?;
+            let azimuth = MeasuredAzimuth::of_line(start, &supports, SIGMA_PX)?;
             Some(TileLine { segment, azimuth })
         })
         .collect()

@@ -1,4 +1,5 @@
-//! Method "rectangles": from the chosen planes between parallel lines to closed buildings (W96 3.6).
+//! Method "rectangles": from the chosen planes between parallel lines to closed buildings (W96
+//! 3.6).
 
 use crate::base::ids::{BuildingId, LineId, ProposalOrigin};
 use crate::planes::objectspace::{PlaneCandidate, RectangleTrace};

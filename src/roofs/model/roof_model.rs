@@ -30,8 +30,8 @@ pub struct Facet {
     pub similarity: f64,
     /// Share of the outline that lies on reconstructed 3D lines: tau_real (B99 4.3).
     pub real_ratio: f64,
-    /// Probability that it is a roof's face, 0 to 1 ([`crate::base::evidence`]); 1 where nothing weighed
-    /// it.
+    /// Probability that it is a roof's face, 0 to 1 ([`crate::base::evidence`]); 1 where nothing
+    /// weighed it.
     pub probability: f64,
     /// How well it is known; `None` where the images show too few of its edges.
     pub uncertainty: Option<FacetUncertainty>,

@@ -11,5 +11,5 @@ export function automaticWorkers(cores: number, pixels: number): number {
 const MOST_WORKERS = 8;
 /** What all workers together may hold of the views. */
 const MEMORY_BYTES = 2e9;
-/** Grey values, colours, and the maps of a stage at work: measured, 22 to 43 (docs/results.md). */
+/** Grey values, colours, and the maps of a stage at work: measured, 22 to 43 (docs/results/page.md). */
 const BYTES_PER_PIXEL = 45;

@@ -1,9 +1,9 @@
 /** What stands around a figure: how far it is, what went wrong, its title and paper, and what can be taken along. */
 import { useEffect, useRef, useState } from "preact/hooks";
-import { AboutFigure, FIGURES } from "../app/figures/AboutFigure";
-import { TakeAlong } from "../app/takeAlong/TakeAlong";
+import { TakeAlong } from "../app/results/takeAlong/TakeAlong";
+import { AboutFigure } from "../app/view/figures/AboutFigure";
 import type { FigureStore } from "./figureStore";
-import { type Kind, rowsOf } from "./kinds";
+import type { Kind } from "./kinds";
 import type { SharedScene } from "./sharedScene";
 
 /** Narrower than this, CSS pixels, parts stand below each other, or close together. */
@@ -27,7 +27,7 @@ export function FigureFrame({ seen }: { seen: Seen }) {
   const [layout, root] = useLayout();
   const body = useRef<HTMLDivElement>(null);
   const { progress, failure } = scene.state.value;
-  const { title, source } = FIGURES[kind.tab];
+  const { title, source } = kind.of;
   const figure = store.figure.value;
   useEffect(() => onBody(body.current));
   return (
@@ -48,15 +48,15 @@ export function FigureFrame({ seen }: { seen: Seen }) {
           <div class={`body kind-${name}`} ref={body}>
             <kind.View figure={figure} />
           </div>
-          {isExplained && <AboutFigure tab={kind.tab} />}
+          {isExplained && <AboutFigure of={kind.of} />}
           <figcaption class="foot">
             <span class="muted">
               {title} · {source}
             </span>
             <TakeAlong
-              tab={kind.tab}
+              of={kind.of}
               name={name}
-              rows={() => rowsOf(kind, store.figure.peek())}
+              rows={() => kind.rows(store.figure.peek())}
               body={() => body.current}
               link={link}
             />

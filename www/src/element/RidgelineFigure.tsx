@@ -4,13 +4,12 @@
  */
 import { effect, signal } from "@preact/signals";
 import { render } from "preact";
-import { FIGURES } from "../app/figures/AboutFigure";
-import { citationOf } from "../app/takeAlong/citation";
-import { pngOf, svgOf } from "../app/takeAlong/pictures";
-import { csvOf, type Row } from "../app/takeAlong/tables";
+import { citationOf } from "../app/results/takeAlong/citation";
+import { pngOf, svgOf } from "../app/results/takeAlong/pictures";
+import { csvOf, type Row } from "../app/results/takeAlong/rows";
 import type { CoreSource } from "../core/workerEngine";
 import type { Args, InputFile, Result } from "../shared/calls";
-import type { Figure } from "../shared/figure";
+import type { Figure } from "../stages/figure";
 import { FigureFrame, type Seen } from "./FigureFrame";
 import {
   addressOf,
@@ -21,7 +20,7 @@ import {
   stateInAddress,
 } from "./figureState";
 import { FigureStore } from "./figureStore";
-import { KIND_NAMES, kindOf, rowsOf } from "./kinds";
+import { KIND_NAMES, kindOf } from "./kinds";
 import { fetchScene, sceneUrl } from "./sceneFiles";
 import { type SceneInput, type SharedScene, sceneOf } from "./sharedScene";
 import { styleSheet } from "./styles";
@@ -146,7 +145,7 @@ export class RidgelineFigure extends HTMLElement {
   /** The figure as an SVG file. */
   toSvg(): string {
     const seen = this.#ready();
-    return svgOf(this.#body as HTMLElement, FIGURES[seen.kind.tab].title);
+    return svgOf(this.#body as HTMLElement, seen.kind.of.title);
   }
 
   /** The figure as a PNG, in the size of print. */
@@ -157,7 +156,7 @@ export class RidgelineFigure extends HTMLElement {
   /** The numbers behind it, a record a row. */
   rows(): Row[] {
     const { kind, store } = this.#ready();
-    return rowsOf(kind, store.figure.peek());
+    return kind.rows(store.figure.peek());
   }
 
   toCsv(): string {
@@ -167,7 +166,7 @@ export class RidgelineFigure extends HTMLElement {
   /** The paper that it is from, as BibTeX. */
   citation(): string {
     const kind = kindOf(this.getAttribute("kind"));
-    return kind === null ? "" : citationOf(kind.tab);
+    return kind === null ? "" : citationOf(kind.of);
   }
 
   /** The address of this page that opens the figure as it is. */

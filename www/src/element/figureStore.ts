@@ -1,14 +1,14 @@
 /** The state of one figure that stands by itself, and its questions to the scene that it shares with others. */
 import { batch, computed, effect, signal } from "@preact/signals";
 import { Inquiry } from "../app/selection/inquiry";
+import { formatSelection, parseSelection, type Selection } from "../shared/selection";
 import {
   type Figure,
   type FigureActions,
   NO_DETAIL,
   type Resumed,
   type SelectionDetail,
-} from "../shared/figure";
-import { formatSelection, parseSelection, type Selection } from "../shared/selection";
+} from "../stages/figure";
 import { FIRST_STATE, type FigureState } from "./figureState";
 import type { SharedScene } from "./sharedScene";
 

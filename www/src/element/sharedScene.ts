@@ -3,14 +3,13 @@
  * needs it first. It ends with the last figure.
  */
 import { type ReadonlySignal, signal } from "@preact/signals";
-import { stagesOf, stageWords } from "../app/session/stageCatalogue";
-import { fetchResults } from "../app/session/stageResults";
 import { type CoreSource, WorkerEngine } from "../core/workerEngine";
 import type { Args, CallName, InputFile, Result } from "../shared/calls";
-import { NO_RESULTS, type Results } from "../shared/figure";
 import type { ParamTree } from "../shared/paramTree";
 import type { LoadOptions, Params, SceneInfo } from "../shared/records";
 import type { Method, StageName } from "../shared/stages";
+import { stagesOf, stageWords } from "../stages/catalogue";
+import { fetchResults, NO_RESULTS, type Results } from "../stages/list";
 
 export interface SceneState {
   scene: SceneInfo | null;

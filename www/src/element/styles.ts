@@ -1,11 +1,12 @@
 /** What figures look like: as on the page. */
-import figuresCss from "../app/figures/figures.css?inline";
-import glossaryCss from "../app/glossary/glossary.css?inline";
-import imagesCss from "../app/images/images.css?inline";
+
 import baseCss from "../app/parts/base.css?inline";
 import chartsCss from "../app/parts/charts.css?inline";
 import partsCss from "../app/parts/parts.css?inline";
-import takeAlongCss from "../app/takeAlong/takeAlong.css?inline";
+import takeAlongCss from "../app/results/takeAlong/takeAlong.css?inline";
+import figuresCss from "../app/view/figures/figures.css?inline";
+import imagesCss from "../app/view/images/images.css?inline";
+import glossaryCss from "../app/words/glossary.css?inline";
 import elementCss from "./element.css?inline";
 import { hostSheet } from "./hostSheet";
 

@@ -1,8 +1,8 @@
 /** `<ridgeline-exercise name="triangulate">`: do it, and hear whether it is right or which mistake it is. */
 import { signal } from "@preact/signals";
 import { render } from "preact";
-import glossaryCss from "../app/glossary/glossary.css?inline";
 import baseCss from "../app/parts/base.css?inline";
+import glossaryCss from "../app/words/glossary.css?inline";
 import { hostSheet } from "../element/hostSheet";
 import { EXERCISES, exerciseNamed } from "./exercises";
 import type { Verdict } from "./judging/about";

@@ -1,7 +1,9 @@
 /** Every kind of things that can be picked, and what is asked of any of them. */
-import type { Figure, Results } from "../shared/figure";
+
 import { formatSelection, type KindName, type Selection } from "../shared/selection";
-import type { About, Kind, Question, Tab } from "./parts/kind";
+import type { Figure } from "../stages/figure";
+import type { Results, Tab } from "../stages/list";
+import type { About, Kind, Question } from "./parts/kind";
 import { type Mark, shapeMarks, warpedMarks } from "./parts/marks";
 import type { Row } from "./parts/rows";
 import type { Shape } from "./parts/shapes";

@@ -1,6 +1,5 @@
 /** The frame of the lessons: where one is, and the contents. */
-import { biggerText, textScale } from "../app/state/textScale";
-import { theme, toggleTheme } from "../app/state/theme";
+import { LookButtons } from "../app/parts/LookButtons";
 import { CONTENTS, lesson, linkTo } from "./address";
 import { LESSONS } from "./catalogue";
 import { LessonView } from "./LessonView";
@@ -21,18 +20,7 @@ export function LessonsPage() {
           Lessons
         </a>
         <span class="grow" />
-        <button
-          type="button"
-          class="quiet"
-          aria-label={`Text size: ${Math.round(100 * textScale.value)} %, next`}
-          title="Text size"
-          onClick={biggerText}
-        >
-          Aa
-        </button>
-        <button type="button" class="quiet" onClick={toggleTheme}>
-          {theme.value === "dark" ? "Light" : "Dark"}
-        </button>
+        <LookButtons />
       </header>
       <main>{now === null ? <Contents /> : <LessonView key={now.id} lesson={now} />}</main>
     </div>

@@ -10,6 +10,3 @@ export const REJECTED_STRIDE = 5;
 
 /** How a stretch of a matched line came about, as `matchedSegments` numbers it. */
 export const SUPPORT_KINDS = ["matched", "merged", "grown"] as const;
-
-/** Why a line of edgels is no segment, as `rejectedSegments` numbers it. */
-export const SEGMENT_REJECTIONS = ["curved", "not significant", "beside an edge"] as const;

@@ -23,7 +23,7 @@ import { yUp, zUp } from "./scene/frame";
 import { gpuFinished } from "./scene/gpuFence";
 import { buildGrid } from "./scene/grid";
 import type { Layer } from "./scene/layer";
-import { CUT, MEASURED, OF_BOTH_HALVES, PICK_ORDER } from "./scene/layerRoles";
+import { type LayerRoles, OF_BOTH_HALVES } from "./scene/layerRoles";
 import { clipFromViewer } from "./scene/photoProjection";
 import { clipPlace, drawHalves } from "./scene/splitView";
 import { buildHandles, dragged, handleAt } from "./tools/handles";
@@ -48,6 +48,7 @@ export class Viewer {
   /** Layers whose shaders are not ready yet. */
   readonly #compiling = new Set<Layer>();
   readonly #observer: ResizeObserver;
+  readonly #roles: LayerRoles;
   readonly #onPick: (selection: Selection | null) => void;
   /** Whether the canvas keeps the pixels that it has. */
   #holdsSize = false;
@@ -75,11 +76,13 @@ export class Viewer {
     canvas: HTMLCanvasElement,
     colours: ThemeColours,
     onPick: (selection: Selection | null) => void,
+    roles: LayerRoles = { picked: [], measured: [], cut: [] },
   ) {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true });
     // Asking for errors waits for the compiler: seconds where graphics are computed in software.
     this.#renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.#onPick = onPick;
+    this.#roles = roles;
     this.#colours = colours;
     const sun = new DirectionalLight(0xffffff, 2.2);
     sun.position.set(-0.6, 1, 0.5);
@@ -276,7 +279,7 @@ export class Viewer {
       }
       this.#cut = clippingPlane(a, b, this.#camera.position);
       this.#renderer.clippingPlanes = [this.#cut];
-      onSection(sectionOf(this.#shown(CUT), a, b));
+      onSection(sectionOf(this.#shown(this.#roles.cut), a, b));
     });
   }
 
@@ -476,7 +479,7 @@ export class Viewer {
     const { clientWidth: width, clientHeight: height } = this.#renderer.domElement;
     const { at, side } = clipPlace(place, { width, height }, this.#left !== null);
     if (this.#points !== null) {
-      const names = MEASURED.filter((name) => this.#sideOf(name) === side);
+      const names = this.#roles.measured.filter((name) => this.#sideOf(name) === side);
       this.#pointAt(at, this.#points, names);
     } else if (side !== "left") {
       this.#onPick(this.#pickAt(at));
@@ -501,7 +504,7 @@ export class Viewer {
   /** Thin things first: a line is picked even where a facet is in front of it by a hair. */
   #pickAt(at: Vector2): Selection | null {
     const caster = this.#caster(at);
-    for (const name of PICK_ORDER) {
+    for (const name of this.#roles.picked) {
       const layer = this.#layers.get(name);
       const hit = layer?.object.visible ? caster.intersectObject(layer.object, true)[0] : undefined;
       const selection = hit === undefined ? null : (layer?.pick(hit) ?? null);

@@ -35,7 +35,7 @@ test.beforeAll(async ({ browser }) => {
   await page.close();
 });
 
-/** Text, XML and binary; what the readers make of the others is compared natively (tests/readers.rs). */
+/** Text, XML and binary; what the readers make of the others is compared natively (tests/input/readers.rs). */
 const MODELLED = HOUSE_FORMATS.filter((format) => /^(photogrammetric|metashape|colmap_binary)$/.test(format));
 
 for (const format of MODELLED) {

@@ -104,7 +104,7 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
   await test.step("its parameters stand in the place of the other method's", async () => {
     await openParameters(page, "Planes");
     await expect(page.getByText("Regions (ORIS)", { exact: true })).toBeVisible();
-    await expect(page.getByText("Half-plane sweep", { exact: true })).toHaveCount(0);
+    await expect(page.getByText("Adjacency graphs", { exact: true })).toHaveCount(0);
     const field = page.locator("#param-objectspace-planes-min_area_m2");
     await field.fill("9");
     await field.press("Enter");

@@ -4,7 +4,6 @@
  * part of a build.
  */
 
-import { stagesOf } from "../../src/app/session/stageCatalogue";
 import type { GroundTexture, WarpedPicture } from "../../src/shared/calls";
 import type { ParamTree } from "../../src/shared/paramTree";
 import type {
@@ -33,6 +32,7 @@ import type {
   TerrainComparison,
   TileReport,
 } from "../../src/shared/records";
+import { stagesOf } from "../../src/stages/catalogue";
 import type { CoreSession } from "../../src/worker/coreSession";
 import { glbOf } from "./glb";
 

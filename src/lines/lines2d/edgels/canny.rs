@@ -27,8 +27,8 @@ pub struct Edgel {
 
 impl Edgel {
     /// Unit direction along the edge, with the brighter side to the right as seen on the screen:
-    /// then [`crate::base::geometry::Segment2::normal`] of a segment that runs this way points to the
-    /// brighter side.
+    /// then [`crate::base::geometry::Segment2::normal`] of a segment that runs this way points to
+    /// the brighter side.
     pub fn tangent(&self) -> Vector2<f64> {
         let length = f64::from(self.strength);
         Vector2::new(

@@ -22,8 +22,8 @@
 //! 4. In `sets`: which files make a set (`single_file_format`, `add_pairs` or `folders`), and the
 //!    reader's line in `OrientationSet::read`.
 //! 5. A fixture: the gable house in `tests/fixtures/NAME` (written by `tests/fixtures/make.py`),
-//!    listed in `tests/readers.rs`, which checks that the truth projects to the same pixels, and
-//!    damages it.
+//!    listed in `tests/input/readers.rs`, which checks that the truth projects to the same pixels,
+//!    and damages it.
 
 mod brown_fit;
 pub(crate) mod bundles;

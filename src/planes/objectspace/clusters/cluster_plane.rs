@@ -2,8 +2,12 @@
 
 use nalgebra::{Matrix2, Point3, Vector2, Vector3};
 
-use crate::base::params::ClusterParams;
 use crate::planes::objectspace::image_lines::ImageLine;
+
+/// An image line within this of a main direction belongs to it, degrees. Assumption.
+pub(crate) const PARALLEL_DEG: f64 = 2.5;
+/// ... or within what this displacement of an end does to its direction, px. Assumption.
+pub(crate) const END_PX: f64 = 1.5;
 
 /// ClusterAxes of a cluster plane: along the main direction, across it and up.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +52,6 @@ impl PlaneRay {
         image_line: &ImageLine,
         axes: &ClusterAxes,
         z_range: [f64; 2],
-        params: &ClusterParams,
     ) -> Option<Self> {
         let z = 0.5 * (z_range[0] + z_range[1]);
         let [a, b] = image_line.ends_at(z);
@@ -56,10 +59,7 @@ impl PlaneRay {
         let along = image_line.image_direction(&middle, &axes.u)?;
         let d = image_line.segment.direction();
         let cross = (along.x * d.y - along.y * d.x).abs();
-        let tolerance = params
-            .angle_deg
-            .to_radians()
-            .max(params.end_px / image_line.length_px);
+        let tolerance = PARALLEL_DEG.to_radians().max(END_PX / image_line.length_px);
         (cross <= tolerance).then_some(())?;
         let n = image_line.normal;
         let normal = Vector2::new(n.dot(&axes.v), n.z);

@@ -41,7 +41,8 @@ mod search;
 mod selection;
 
 pub use cluster_line::{ClusterLine, ClusterTrace};
-pub(crate) use cluster_plane::{ClusterAxes, overlap};
+pub(crate) use cluster_plane::{ClusterAxes, END_PX, PARALLEL_DEG, overlap};
+pub(crate) use search::{LEAST_COVERAGE, SIGMA_PX};
 
 use nalgebra::Vector3;
 
@@ -61,7 +62,7 @@ pub fn cluster_lines(
 ) -> (Vec<ClusterLine>, ClusterTrace) {
     let axes = ClusterAxes::new(direction);
     let rays: Vec<PlaneRay> = (0..image_lines.len())
-        .filter_map(|k| PlaneRay::new(k, &image_lines[k], &axes, z_range, params))
+        .filter_map(|k| PlaneRay::new(k, &image_lines[k], &axes, z_range))
         .collect();
     let search = ClusterSearch {
         scene,

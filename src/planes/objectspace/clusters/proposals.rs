@@ -6,6 +6,12 @@ use std::collections::btree_map::Entry;
 use super::cluster_plane::PlaneRay;
 use super::search::{ClusterProposal, ClusterSearch};
 
+/// Intersections nearer than this are one, metres. Assumption.
+const CELL_M: f64 = 0.15;
+/// Largest difference of the grey values on one side at least, grey range 1. Assumption; W96 4
+/// proposes to use radiometry here.
+const LARGEST_GREY_DIFFERENCE: f64 = 0.08;
+
 impl ClusterSearch<'_> {
     /// Intersections of image lines of different views that may show the same stretch, one for each
     /// small cell; and how many there were.
@@ -21,8 +27,8 @@ impl ClusterSearch<'_> {
                 let middle = 0.5 * (proposal.stretch[0] + proposal.stretch[1]);
                 let cell = |x: f64, size: f64| (x / size).floor() as i64;
                 let key = [
-                    cell(proposal.at.x, self.params.cell_m),
-                    cell(proposal.at.y, self.params.cell_m),
+                    cell(proposal.at.x, CELL_M),
+                    cell(proposal.at.y, CELL_M),
                     cell(middle, 4.0),
                     i64::from(proposal.forward),
                 ];
@@ -52,8 +58,7 @@ impl ClusterSearch<'_> {
         let at = a.meet(b)?;
         (at.y >= self.z_range[0] && at.y <= self.z_range[1]).then_some(())?;
         // The same surface on one side at least.
-        let alike =
-            (0..2).any(|k| (s.sides[k] - t.sides[k]).abs() <= self.params.max_grey_difference);
+        let alike = (0..2).any(|k| (s.sides[k] - t.sides[k]).abs() <= LARGEST_GREY_DIFFERENCE);
         alike.then_some(())?;
         let (p, q) = (
             self.stretch(a.image_line, at.y),

@@ -10,6 +10,15 @@ use crate::base::params::ClusterParams;
 use crate::orienting::scene::Scene;
 use crate::planes::objectspace::image_lines::ImageLine;
 
+/// Standard deviation of an image line, px. Assumption: the precision of region boundaries.
+pub(crate) const SIGMA_PX: f64 = 0.4;
+/// A view that covers less of a line does not count. Assumption.
+pub(crate) const LEAST_COVERAGE: f64 = 0.25;
+/// What an image line costs on its own, bits. Assumption: one of 64 positions.
+const POSITION_BITS: f64 = 6.0;
+/// What it costs that a view misses a line, bits. Assumption.
+const MISS_BITS: f64 = 1.0;
+
 /// A place in the cluster plane and the stretch that two image lines propose.
 pub(crate) struct ClusterProposal {
     pub at: Vector2<f64>,
@@ -169,7 +178,7 @@ impl ClusterSearch<'_> {
         let (mut a, mut b) = (Matrix2::zeros(), Vector2::zeros());
         for (k, s, r2) in members {
             let ray = &self.rays[*k];
-            let weight = (s[1] - s[0]) / (1.0 + r2 / (self.params.sigma_px * self.params.sigma_px));
+            let weight = (s[1] - s[0]) / (1.0 + r2 / (SIGMA_PX * SIGMA_PX));
             a += ray.normal * ray.normal.transpose() * weight;
             b += ray.normal * (ray.offset * weight);
         }
@@ -186,7 +195,7 @@ impl ClusterSearch<'_> {
     ) -> (f64, Vec<(ViewId, f64)>) {
         let length = stretch[1] - stretch[0];
         let evidence = 0.5 * crate::base::math::log2(1.0 + length);
-        let variance = self.params.sigma_px * self.params.sigma_px;
+        let variance = SIGMA_PX * SIGMA_PX;
         let mut gain = -self.params.line_bits;
         let mut coverage = Vec::new();
         for view in self.scene.view_ids() {
@@ -195,19 +204,18 @@ impl ClusterSearch<'_> {
                 .filter(|m| self.image_lines[self.rays[m.0].image_line].view == view)
                 .collect();
             let covered = covered(own.iter().map(|m| m.1), stretch) / length;
-            if covered > self.params.min_coverage {
+            if covered > LEAST_COVERAGE {
                 let residual = own.iter().map(|m| m.2 * overlap(m.1, stretch)).sum::<f64>()
                     / own
                         .iter()
                         .map(|m| overlap(m.1, stretch))
                         .sum::<f64>()
                         .max(1e-9);
-                let bits = self.params.position_bits
-                    - residual / (2.0 * variance * std::f64::consts::LN_2);
+                let bits = POSITION_BITS - residual / (2.0 * variance * std::f64::consts::LN_2);
                 gain += covered * bits * evidence;
                 coverage.push((view, covered));
             } else if self.sees(view, at, stretch) {
-                gain -= self.params.miss_bits;
+                gain -= MISS_BITS;
             }
         }
         (gain, coverage)

@@ -3,6 +3,10 @@
 use super::integrals::CHANNELS;
 use crate::photographs::raster::{Gray, gaussian_blur};
 
+/// Standard deviation of the blur before gradients are taken, px. Assumption: 0.8, as for
+/// edgels.
+const SMOOTHING_PX: f64 = 0.8;
+
 /// Grey values and the differences of red and blue from them (half of them, around 1/2), 0 to 1,
 /// sharp and blurred.
 pub struct ColorImage {
@@ -13,9 +17,8 @@ pub struct ColorImage {
 }
 
 impl ColorImage {
-    /// From grey values and colours of the same size; `smoothing_px` is the standard deviation of
-    /// the blur.
-    pub fn new(gray: &Gray, rgb: &image::RgbImage, smoothing_px: f64) -> Self {
+    /// From grey values and colours of the same size.
+    pub fn new(gray: &Gray, rgb: &image::RgbImage) -> Self {
         let difference = |band: usize| {
             let mut d = gray.clone();
             for (value, pixel) in d.data.iter_mut().zip(rgb.pixels()) {
@@ -23,22 +26,22 @@ impl ColorImage {
             }
             d
         };
-        Self::blurred([gray.clone(), difference(0), difference(2)], smoothing_px)
+        Self::blurred([gray.clone(), difference(0), difference(2)])
     }
 
     /// From grey values alone.
-    pub fn from_gray(gray: &Gray, smoothing_px: f64) -> Self {
+    pub fn from_gray(gray: &Gray) -> Self {
         let none = Gray::new(gray.width, gray.height);
-        Self::blurred([gray.clone(), none.clone(), none], smoothing_px)
+        Self::blurred([gray.clone(), none.clone(), none])
     }
 
-    fn blurred(sharp: [Gray; CHANNELS], smoothing_px: f64) -> Self {
+    fn blurred(sharp: [Gray; CHANNELS]) -> Self {
         let empty = sharp[0].data.is_empty();
         let smooth = sharp.each_ref().map(|g| {
             if empty {
                 g.clone()
             } else {
-                gaussian_blur(g, smoothing_px)
+                gaussian_blur(g, SMOOTHING_PX)
             }
         });
         Self { sharp, smooth }

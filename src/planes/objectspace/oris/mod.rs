@@ -212,7 +212,7 @@ mod tests {
     fn a_drawn_partition_is_recovered() {
         for seed in [1, 2, 3, 12345] {
             let (gray, rings) = drawn(seed);
-            let image = ColorImage::from_gray(&gray, 0.8);
+            let image = ColorImage::from_gray(&gray);
             let s = segment_regions(&image, &OrisParams::default());
             // Mixed pixels where three regions meet may be a sliver of their own.
             let areas: Vec<u32> = s.regions.iter().map(|r| r.area_px).collect();
@@ -238,7 +238,7 @@ mod tests {
     #[test]
     fn the_regions_share_out_the_image() {
         let (gray, _) = drawn(12345);
-        let s = segment_regions(&ColorImage::from_gray(&gray, 0.8), &OrisParams::default());
+        let s = segment_regions(&ColorImage::from_gray(&gray), &OrisParams::default());
         let area: u32 = s.regions.iter().map(|r| r.area_px).sum();
         assert_eq!(area as usize, gray.data.len());
         for region in 0..s.regions.len() as u32 {
@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn without_contrast_there_is_one_region() {
         let gray = Gray::from_fn(40, 30, |_, _| 0.5);
-        let s = segment_regions(&ColorImage::from_gray(&gray, 0.8), &OrisParams::default());
+        let s = segment_regions(&ColorImage::from_gray(&gray), &OrisParams::default());
         assert_eq!((s.regions.len(), s.vectors.len()), (1, 4));
         assert_eq!(s.regions[0].rings[0].len(), 4);
     }

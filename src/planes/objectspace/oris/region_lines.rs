@@ -15,6 +15,12 @@ use crate::base::params::OrisParams;
 use crate::lines::lines2d::{ImageSegment, SegmentKind};
 use crate::photographs::raster::Gray;
 
+/// Least contrast of a line, grey range 1. Assumption: three grey levels of 255.
+const LEAST_CONTRAST: f64 = 0.012;
+/// Largest root mean square distance of the gradient's crest from the line, px; otherwise the
+/// vector itself is taken. Assumption.
+const LARGEST_RMS_PX: f64 = 0.8;
+
 /// An image line on the boundary of two regions, directed by contrast: its right side is the
 /// brighter one (or the one of more red or blue, where colour shows it better).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,7 +49,7 @@ pub fn region_lines(
             let vector = Segment2::new(point(v.ends[0]), point(v.ends[1]));
             let channel = clearest_channel(image, &vector)?;
             let (sharp, smooth) = (&image.sharp[channel], &image.smooth[channel]);
-            let mut found = measure(sharp, smooth, &vector, k as u32, params)?;
+            let mut found = measure(sharp, smooth, &vector, k as u32)?;
             if channel != 0 {
                 let beside = |side| grey_beside(&image.sharp[0], &found.line.segment, side);
                 found.sides = [beside(-1.0)?, beside(1.0)?];
@@ -84,13 +90,7 @@ fn clearest_channel(image: &ColorImage, vector: &Segment2) -> Option<usize> {
     Some(best.0)
 }
 
-fn measure(
-    gray: &Gray,
-    smooth: &Gray,
-    vector: &Segment2,
-    index: u32,
-    params: &OrisParams,
-) -> Option<RegionLine> {
+fn measure(gray: &Gray, smooth: &Gray, vector: &Segment2, index: u32) -> Option<RegionLine> {
     let beside = |s: &Segment2, side: f64| grey_beside(gray, s, side);
     // The bright side to the right.
     let vector = if beside(vector, 1.0)? >= beside(vector, -1.0)? {
@@ -100,14 +100,14 @@ fn measure(
     };
     let crest = crest(smooth, &vector);
     let (segment, rms) = fit(&vector, &crest)?;
-    let segment = if rms <= params.max_rms_px {
+    let segment = if rms <= LARGEST_RMS_PX {
         segment
     } else {
         vector
     };
     let sides = [beside(&segment, -1.0)?, beside(&segment, 1.0)?];
     let contrast = sides[1] - sides[0];
-    if contrast < params.min_contrast {
+    if contrast < LEAST_CONTRAST {
         return None;
     }
     let n = crest.len().max(2) as f64;
@@ -232,7 +232,7 @@ mod tests {
             (0.3 + 0.3 * (d + 0.5).clamp(0.0, 1.0)) as f32
         });
         let params = OrisParams::default();
-        let image = ColorImage::from_gray(&gray, params.smoothing_px);
+        let image = ColorImage::from_gray(&gray);
         let lines = region_lines(&image, &segment_regions(&image, &params), &params);
         assert_eq!(lines.len(), 1);
         let found = &lines[0];

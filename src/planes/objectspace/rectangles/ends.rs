@@ -12,9 +12,19 @@ use serde::{Deserialize, Serialize};
 use super::strip::PlaneStrip;
 use crate::base::geometry::covered;
 use crate::base::ids::ViewId;
-use crate::base::params::PlaneParams;
 use crate::planes::objectspace::clusters::overlap;
 use crate::planes::objectspace::image_lines::ImageLine;
+
+/// By how much the window of a plane is enlarged, metres. W96 3.6: "appr. 0.5 m".
+const MARGIN_M: f64 = 0.5;
+/// Shortest stretch across the plane that a crossing image line covers, metres. Assumption.
+const LEAST_CROSSING_M: f64 = 0.8;
+/// A crossing within this of a right angle is one, degrees. Assumption.
+const RIGHT_ANGLE_DEG: f64 = 3.0;
+/// Crossings within this along the lines are one end, metres. Assumption.
+pub(super) const POSITION_M: f64 = 0.3;
+/// Most ends of a pair of lines that are tested. W96: two. Assumption.
+const MOST_ENDS: usize = 8;
 
 /// An image line cut with the plane: where its line crosses the two lines, and the stretch across
 /// that it covers.
@@ -42,12 +52,8 @@ pub struct PlaneEnd {
 }
 
 /// The image lines inside the window of a strip that cross it.
-pub(crate) fn crossings(
-    strip: &PlaneStrip,
-    image_lines: &[ImageLine],
-    params: &PlaneParams,
-) -> Vec<Crossing> {
-    let m = params.margin_m;
+pub(crate) fn crossings(strip: &PlaneStrip, image_lines: &[ImageLine]) -> Vec<Crossing> {
+    let m = MARGIN_M;
     let inside = |p: &[f64; 2]| {
         p[0] >= strip.range[0] - m
             && p[0] <= strip.range[1] + m
@@ -63,8 +69,7 @@ pub(crate) fn crossings(
             let (p, q) = if p[1] <= q[1] { (p, q) } else { (q, p) };
             let (du, dw) = (q[0] - p[0], q[1] - p[1]);
             // Flatter ones than 20 degrees run along the lines rather than across.
-            (dw > 0.36 * du.abs() && dw >= params.min_crossing_m.min(0.5 * strip.width))
-                .then_some(())?;
+            (dw > 0.36 * du.abs() && dw >= LEAST_CROSSING_M.min(0.5 * strip.width)).then_some(())?;
             let slope = du / dw;
             Some(Crossing {
                 view: s.view,
@@ -83,10 +88,9 @@ pub(crate) fn ends(
     crossings: &[Crossing],
     line_ends: &[f64],
     views: usize,
-    params: &PlaneParams,
 ) -> Vec<PlaneEnd> {
     let mut proposals: Vec<[f64; 2]> = Vec::new();
-    let square = |c: &Crossing| (c.at[1] - c.at[0]).abs() <= square_tolerance(c, strip, params);
+    let square = |c: &Crossing| (c.at[1] - c.at[0]).abs() <= square_tolerance(c, strip);
     for c in crossings {
         if square(c) {
             let middle = 0.5 * (c.across[0] + c.across[1]) / strip.width;
@@ -97,7 +101,7 @@ pub(crate) fn ends(
         }
     }
     proposals.extend(line_ends.iter().map(|&u| [u, u]));
-    distinct(strip, crossings, proposals, views, params)
+    distinct(strip, crossings, proposals, views)
 }
 
 /// The clusters of the slanted crossings and of further proposals.
@@ -106,14 +110,13 @@ pub(crate) fn slanted_ends(
     crossings: &[Crossing],
     starts: &[[f64; 2]],
     views: usize,
-    params: &PlaneParams,
 ) -> Vec<PlaneEnd> {
     let proposals = crossings
         .iter()
         .map(|c| c.at)
         .chain(starts.iter().copied())
         .collect();
-    distinct(strip, crossings, proposals, views, params)
+    distinct(strip, crossings, proposals, views)
 }
 
 /// Settles the proposals and keeps the best, each place once.
@@ -122,11 +125,10 @@ fn distinct(
     crossings: &[Crossing],
     proposals: Vec<[f64; 2]>,
     views: usize,
-    params: &PlaneParams,
 ) -> Vec<PlaneEnd> {
     let mut found: Vec<PlaneEnd> = proposals
         .into_iter()
-        .map(|p| settle(strip, crossings, p, views, params))
+        .map(|p| settle(strip, crossings, p, views))
         .collect();
     found.sort_by(|a, b| {
         b.support
@@ -136,8 +138,8 @@ fn distinct(
     });
     let mut kept: Vec<PlaneEnd> = Vec::new();
     for end in found {
-        let same = |k: &PlaneEnd| (0..2).all(|i| (k.at[i] - end.at[i]).abs() < params.position_m);
-        if !kept.iter().any(same) && kept.len() < params.max_ends {
+        let same = |k: &PlaneEnd| (0..2).all(|i| (k.at[i] - end.at[i]).abs() < POSITION_M);
+        if !kept.iter().any(same) && kept.len() < MOST_ENDS {
             kept.push(end);
         }
     }
@@ -146,31 +148,20 @@ fn distinct(
 
 /// How far the two positions of a crossing at right angles may be apart, metres: the direction of a
 /// short image line is uncertain.
-fn square_tolerance(c: &Crossing, strip: &PlaneStrip, params: &PlaneParams) -> f64 {
+fn square_tolerance(c: &Crossing, strip: &PlaneStrip) -> f64 {
     let length = c.across[1] - c.across[0];
-    strip.width
-        * (params.angle_deg.to_radians() + params.position_m / length.max(params.position_m))
-            .min(0.35)
+    strip.width * (RIGHT_ANGLE_DEG.to_radians() + POSITION_M / length.max(POSITION_M)).min(0.35)
 }
 
 /// Moves a proposal to the weighted mean of the crossings near it (W96: "weighted by the 2D lengths
 /// of the lines").
-fn settle(
-    strip: &PlaneStrip,
-    crossings: &[Crossing],
-    start: [f64; 2],
-    views: usize,
-    params: &PlaneParams,
-) -> PlaneEnd {
+fn settle(strip: &PlaneStrip, crossings: &[Crossing], start: [f64; 2], views: usize) -> PlaneEnd {
     let square = start[0] == start[1];
     let mut at = start;
     let mut near: Vec<&Crossing> = Vec::new();
     const ROUNDS: usize = 3;
     for _ in 0..ROUNDS {
-        near = crossings
-            .iter()
-            .filter(|c| lies_on(c, at, strip, params))
-            .collect();
+        near = crossings.iter().filter(|c| lies_on(c, at, strip)).collect();
         if near.is_empty() {
             break;
         }
@@ -194,12 +185,12 @@ fn settle(
 }
 
 /// Does the stretch of the crossing lie on the line between two positions?
-fn lies_on(c: &Crossing, at: [f64; 2], strip: &PlaneStrip, params: &PlaneParams) -> bool {
+fn lies_on(c: &Crossing, at: [f64; 2], strip: &PlaneStrip) -> bool {
     c.across.iter().all(|w| {
         let f = w / strip.width;
         let own = c.at[0] + (c.at[1] - c.at[0]) * f;
         let line = at[0] + (at[1] - at[0]) * f;
-        (own - line).abs() <= params.position_m
+        (own - line).abs() <= POSITION_M
     })
 }
 
@@ -284,9 +275,8 @@ mod tests {
             .map(|[a, b]| Segment3::new(strip.point(*a, 0.0), strip.point(*b, strip.width)))
             .collect();
         let lines = planted_lines(&scene, &truth, 0.3, &[2]);
-        let params = PlaneParams::default();
-        let crossings = crossings(&strip, &image_lines(&scene, &lines), &params);
-        ends(&strip, &crossings, &[], 6, &params)
+        let crossings = crossings(&strip, &image_lines(&scene, &lines));
+        ends(&strip, &crossings, &[], 6)
     }
 
     #[test]
@@ -326,9 +316,8 @@ mod tests {
             strip.point(1.0, strip.width) + up,
         )];
         let lines = planted_lines(&scene, &truth, 0.0, &[]);
-        let params = PlaneParams::default();
-        let crossings = crossings(&strip, &image_lines(&scene, &lines), &params);
-        let best = ends(&strip, &crossings, &[], 6, &params);
+        let crossings = crossings(&strip, &image_lines(&scene, &lines));
+        let best = ends(&strip, &crossings, &[], 6);
         assert!(best.first().is_none_or(|e| e.support < 0.6), "{best:?}");
     }
 }

@@ -9,9 +9,9 @@
 //!   - sum over the sides of  length (what a border costs, less where image lines support it)
 //! ```
 //!
-//! in nats: by how much the energy of the labelling ([`crate::roofs::facets`]) is lower with the plane
-//! than without it. A gap between two roofs speaks against a plane over both. Whether a polygon is
-//! likelier true than false is asked of the model of evidence ([`PlaneFeatures`]):
+//! in nats: by how much the energy of the labelling ([`crate::roofs::facets`]) is lower with the
+//! plane than without it. A gap between two roofs speaks against a plane over both. Whether a
+//! polygon is likelier true than false is asked of the model of evidence ([`PlaneFeatures`]):
 //!
 //! * radiometry, the paper's criterion that "the area ... inside the 3D plane should be
 //!   radiometrically homogeneous over all images": what the correlation windows say of the plane,
@@ -54,7 +54,7 @@ use nalgebra::Point3;
 use self::ends::{crossings, ends, slanted_ends};
 use self::occluding_solids::partly_hidden;
 use self::plane_evidence::{PlaneAgreement, PlaneConsistency, area_2d};
-use self::shapes::{StripLine, StripPolygon, quadrilaterals, triangle};
+use self::shapes::{LEAST_WIDTH_M, StripLine, StripPolygon, quadrilaterals, triangle};
 use self::strip::PlaneStrip;
 use super::clusters::{ClusterAxes, ClusterLine, overlap};
 use super::image_lines::ImageLine;
@@ -64,6 +64,13 @@ use crate::base::execution::{SILENT, Sharded, sharded_map};
 use crate::base::params::PlaneParams;
 use crate::orienting::scene::Scene;
 use crate::planes::terrain::Ground;
+
+/// Most candidates kept of a pair of lines. Assumption.
+const MOST_CANDIDATES: usize = 4;
+/// A plane is compared with those above and below it at a distance that moves the images
+/// against each other by this, px. Assumption: more than the error of a true plane, less than
+/// the windows.
+const DISPLACEMENT_PX: f64 = 3.0;
 
 /// What the search for planes works on: one window, one pair of main directions.
 pub(crate) struct PlaneSearch<'a> {
@@ -154,11 +161,11 @@ impl PlaneSearch<'_> {
             stretches: Vec::new(),
         };
         let strip = self.strip(axes, [base, &tip]).ok()?;
-        let crossings = crossings(&strip, self.image_lines, self.params);
+        let crossings = crossings(&strip, self.image_lines);
         let views = self.scene.views.len();
         let starts = base.range.map(|u| [u, top]);
-        let ends = slanted_ends(&strip, &crossings, &starts, views, self.params);
-        let shape = triangle(&strip, base, top, &ends, views, self.params)?;
+        let ends = slanted_ends(&strip, &crossings, &starts, views);
+        let shape = triangle(&strip, base, top, &ends, views)?;
         self.measured(&strip, vec![shape]).pop()
     }
 
@@ -191,22 +198,10 @@ impl PlaneSearch<'_> {
                 return (Vec::new(), trace);
             }
         };
-        trace.crossings = crossings(&strip, self.image_lines, self.params);
+        trace.crossings = crossings(&strip, self.image_lines);
         let line_ends: Vec<f64> = pair.iter().flat_map(|a| a.range).collect();
-        trace.ends = ends(
-            &strip,
-            &trace.crossings,
-            &line_ends,
-            self.scene.views.len(),
-            self.params,
-        );
-        let shapes = quadrilaterals(
-            &strip,
-            pair,
-            &trace.ends,
-            self.scene.views.len(),
-            self.params,
-        );
+        trace.ends = ends(&strip, &trace.crossings, &line_ends, self.scene.views.len());
+        let shapes = quadrilaterals(&strip, pair, &trace.ends, self.scene.views.len());
         if shapes.is_empty() {
             trace.rejection = Some(PlaneRejection::NoEnds);
             return (Vec::new(), trace);
@@ -229,7 +224,7 @@ impl PlaneSearch<'_> {
         let strip = PlaneStrip::new(axes, a.place, b.place, range).ok_or(PlaneRejection::Shape)?;
         let steepest = crate::base::math::cos(p.max_slope_deg.to_radians());
         let shaped = strip.plane.normal.z >= steepest
-            && (p.min_width_m..=p.max_width_m).contains(&strip.width)
+            && (LEAST_WIDTH_M..=p.max_width_m).contains(&strip.width)
             && overlap(a.range, b.range) >= 0.3 * shorter;
         if !shaped {
             return Err(PlaneRejection::Shape);
@@ -283,7 +278,7 @@ impl PlaneSearch<'_> {
         if promising.is_empty() {
             return Vec::new();
         }
-        let displaced = consistency.displaced(self.params.beside_px);
+        let displaced = consistency.displaced(DISPLACEMENT_PX);
         let compared = promising.into_iter().map(|mut candidate| {
             let beside = consistency.best_displaced_nats(&displaced, &candidate.ring);
             let features = &mut candidate.features;
@@ -297,7 +292,7 @@ impl PlaneSearch<'_> {
     /// Those with the largest measure and the likeliest ones: one that reaches a little too far may
     /// have a larger measure than the right one beside it.
     fn best(&self, mut found: Vec<(f64, PlaneCandidate)>) -> Vec<PlaneCandidate> {
-        let most = self.params.max_candidates.min(found.len());
+        let most = MOST_CANDIDATES.min(found.len());
         found.sort_by(|(_, a), (_, b)| b.measure_nats.total_cmp(&a.measure_nats));
         let mut others = found.split_off(most);
         others.sort_by(|(a, _), (b, _)| b.total_cmp(a));

@@ -3,11 +3,16 @@
 
 use nalgebra::Point3;
 
-use super::ends::{PlaneEnd, side_support};
+use super::ends::{POSITION_M, PlaneEnd, side_support};
 use super::plane_evidence::area_2d;
 use super::strip::PlaneStrip;
 use crate::base::ids::ViewId;
-use crate::base::params::PlaneParams;
+
+/// Least distance of the two lines, metres. Assumption.
+pub(super) const LEAST_WIDTH_M: f64 = 1.2;
+/// Least share of an outline that image lines cover, mean over the views, for it to be looked
+/// at. Assumption.
+const LEAST_SUPPORT: f64 = 0.25;
 
 /// A line in the frame of its direction.
 pub(crate) struct StripLine {
@@ -30,10 +35,10 @@ pub(crate) struct StripPolygon {
 
 impl StripPolygon {
     /// With sides of given (length, support); `None` where too little of them is seen.
-    fn new(corners: Vec<[f64; 2]>, sides: &[[f64; 2]], params: &PlaneParams) -> Option<Self> {
+    fn new(corners: Vec<[f64; 2]>, sides: &[[f64; 2]]) -> Option<Self> {
         let length_m: f64 = sides.iter().map(|s| s[0]).sum();
         let support = sides.iter().map(|s| s[0] * s[1]).sum::<f64>() / length_m;
-        (support >= params.min_support).then_some(Self {
+        (support >= LEAST_SUPPORT).then_some(Self {
             corners,
             length_m,
             support,
@@ -57,13 +62,12 @@ pub(crate) fn quadrilaterals(
     lines: [&StripLine; 2],
     ends: &[PlaneEnd],
     views: usize,
-    params: &PlaneParams,
 ) -> Vec<StripPolygon> {
     let pairs = ends
         .iter()
         .flat_map(|left| ends.iter().map(move |right| [left, right]));
     pairs
-        .filter_map(|pair| quadrilateral(strip, lines, pair, views, params))
+        .filter_map(|pair| quadrilateral(strip, lines, pair, views))
         .collect()
 }
 
@@ -72,14 +76,13 @@ fn quadrilateral(
     [a, b]: [&StripLine; 2],
     [left, right]: [&PlaneEnd; 2],
     views: usize,
-    params: &PlaneParams,
 ) -> Option<StripPolygon> {
     let [p, q] = [0, 1].map(|k| [left.at[k], right.at[k]]);
     let lengths = [p[1] - p[0], q[1] - q[0]];
     // Shorter ones are for triangles.
     const SHORTEST_M: f64 = 0.3;
-    let long = lengths[0].min(lengths[1]) >= SHORTEST_M
-        && lengths[0].max(lengths[1]) >= params.min_width_m;
+    let long =
+        lengths[0].min(lengths[1]) >= SHORTEST_M && lengths[0].max(lengths[1]) >= LEAST_WIDTH_M;
     long.then_some(())?;
     let sides = [
         [lengths[0], side_support(&a.stretches, p, views)],
@@ -93,7 +96,7 @@ fn quadrilateral(
         [q[1], strip.width],
         [q[0], strip.width],
     ];
-    StripPolygon::new(corners, &sides, params)
+    StripPolygon::new(corners, &sides)
 }
 
 /// The triangle over a line with its tip at `top` on the other border of the strip, between the
@@ -104,13 +107,12 @@ pub(crate) fn triangle(
     top: f64,
     ends: &[PlaneEnd],
     views: usize,
-    params: &PlaneParams,
 ) -> Option<StripPolygon> {
     // The tip is at least so far from either end of the base.
     const INSIDE_M: f64 = 0.5;
     let best = |side: f64| {
         let to_tip = |e: &&PlaneEnd| {
-            (e.at[1] - top).abs() <= 2.0 * params.position_m && side * (e.at[0] - top) > INSIDE_M
+            (e.at[1] - top).abs() <= 2.0 * POSITION_M && side * (e.at[0] - top) > INSIDE_M
         };
         let on_side = ends.iter().filter(to_tip);
         on_side.max_by(|a, b| a.support.total_cmp(&b.support))
@@ -124,7 +126,7 @@ pub(crate) fn triangle(
     let below = side_support(&base.stretches, bottom, views);
     let sides = [[bottom[1] - bottom[0], below], slant(left), slant(right)];
     let corners = vec![[bottom[0], 0.0], [bottom[1], 0.0], [top, strip.width]];
-    StripPolygon::new(corners, &sides, params)
+    StripPolygon::new(corners, &sides)
 }
 
 /// Length of an end across the strip, metres.

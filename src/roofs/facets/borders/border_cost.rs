@@ -173,7 +173,8 @@ fn is_line_height(height: f64, z: f64) -> bool {
 
 /// Planes at less than 6 degrees that meet are one plane found twice: the cosine of that angle.
 const SAME_COSINE: f64 = 0.994_521_895_368_273_3;
-/// Share of the cost of a border where two planes meet without a line. Measured: 0.1 breaks roofs into more pieces.
+/// Share of the cost of a border where two planes meet without a line. Measured: 0.1 breaks roofs
+/// into more pieces.
 pub(super) const CREASE: f64 = 0.3;
 /// Sine of the least slope that has a top (6 degrees).
 const LEAST_SLOPE_SINE: f64 = 0.1;

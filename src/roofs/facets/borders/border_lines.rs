@@ -4,7 +4,8 @@
 //! Four kinds of lines may bound a facet:
 //! * reconstructed 3D lines, whether they lie in the plane with another plane attached or not
 //!   (figure 21), extended at both ends, since detected ends are unreliable (figure 22);
-//! * lines found in a plane from segments of several views ([`crate::planes::hypotheses::plane_lines`]);
+//! * lines found in a plane from segments of several views
+//!   ([`crate::planes::hypotheses::plane_lines`]);
 //! * new lines in which two neighbouring planes meet (figure 19);
 //! * closing lines across the ends of a supporting line, and where the views cease to agree on a
 //!   plane ([`super::extent`]), and the level sides of the paper's convex hull, where nothing was

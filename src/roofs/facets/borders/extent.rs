@@ -4,8 +4,8 @@
 //! side whose edge is in no image strongly enough still shows: the views agree on the plane up to
 //! it and not beyond. Of all rectangles along the plane's longest line the one with the largest sum
 //! of evidence is sought, each position with the evidence it has when planes compete
-//! ([`crate::roofs::facets::evidence`]); where it ends, a line may bound the facet. The line has no cost
-//! advantage, it only allows the facet to end there.
+//! ([`crate::roofs::facets::evidence`]); where it ends, a line may bound the facet. The line has no
+//! cost advantage, it only allows the facet to end there.
 
 use nalgebra::{Point2, Vector2};
 

@@ -9,11 +9,11 @@
 //! E = - sum over area  nats(views | plane)  +  sum over sides  length x V  +  sum over corners
 //! ```
 //!
-//! with the first two terms of the labelling ([`crate::base::labelling`]) and, for every corner, minus
-//! the logarithm of how often roofs turn so ([`crate::base::evidence::CornerTable`]). The labelling
-//! cannot have the last one, because a corner is no matter of two cells. Ways between two facets,
-//! or between a facet and what is no roof, are replaced by simpler ones as long as E falls: by the
-//! straight way, and by ways that go on from one end and meet what comes from the other.
+//! with the first two terms of the labelling ([`crate::base::labelling`]) and, for every corner,
+//! minus the logarithm of how often roofs turn so ([`crate::base::evidence::CornerTable`]). The
+//! labelling cannot have the last one, because a corner is no matter of two cells. Ways between two
+//! facets, or between a facet and what is no roof, are replaced by simpler ones as long as E falls:
+//! by the straight way, and by ways that go on from one end and meet what comes from the other.
 //!
 //! ```text
 //! energy  what the energy of outlines is made of

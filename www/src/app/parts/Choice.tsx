@@ -1,18 +1,33 @@
 /** One of a few, as buttons beside each other. */
-interface Props<T extends string> {
+import type { Signal } from "@preact/signals";
+
+type Props<T extends string | number | boolean> = {
   /** What is chosen, for those who do not see the buttons side by side. */
   legend: string;
-  choices: readonly (readonly [T, string])[];
-  chosen: T;
-  choose: (one: T) => void;
-}
+  choices: readonly (readonly [value: T, title: string, tooltip?: string])[];
+  class?: string;
+} & ({ of: Signal<T> } | { chosen: T; choose: (one: T) => void });
 
-export function Choice<T extends string>({ legend, choices, chosen, choose }: Props<T>) {
+export function Choice<T extends string | number | boolean>({ legend, choices, ...of }: Props<T>) {
+  const chosen = "of" in of ? of.of.value : of.chosen;
+  const choose = (one: T) => {
+    if ("of" in of) {
+      of.of.value = one;
+    } else {
+      of.choose(one);
+    }
+  };
   return (
-    <fieldset class="choice">
+    <fieldset class={`choice ${of.class ?? ""}`}>
       <legend class="visually-hidden">{legend}</legend>
-      {choices.map(([one, title]) => (
-        <button key={one} type="button" aria-pressed={chosen === one} onClick={() => choose(one)}>
+      {choices.map(([one, title, tooltip]) => (
+        <button
+          key={one}
+          type="button"
+          title={tooltip}
+          aria-pressed={chosen === one}
+          onClick={() => choose(one)}
+        >
           {title}
         </button>
       ))}

@@ -3,6 +3,7 @@ import { batch } from "@preact/signals";
 import type { InputFile } from "../../shared/calls";
 import { asTree } from "../../shared/paramTree";
 import type { StageName } from "../../shared/stages";
+import { stagesOf } from "../../stages/catalogue";
 import { saveFile } from "../parts/saveFile";
 import type { Turn } from "../session/actionQueue";
 import { refusalNotices } from "../session/failureNotice";
@@ -17,7 +18,6 @@ import {
   outdateScene,
   tellParams,
 } from "../session/session";
-import { stagesOf } from "../session/stageCatalogue";
 import { clearResults, runEverything, runStages } from "../session/stageRuns";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions, wishesOf } from "../settings/loadOptions";

@@ -5,9 +5,9 @@ import type { ParamTree } from "../../shared/paramTree";
 import { isBusy } from "../state/activity";
 import { defaults, params } from "../state/parameters";
 import { files, isDemo, projectName, type RunOptions, runOptions } from "../state/project";
-import { forgetKeptTiles } from "../tiles/keptTiles";
 import { askToRead, fileAt, isReadable, placeOf } from "./folders";
 import { presentResults, type StoredResults } from "./storedResults";
+import { forgetKeptTiles } from "./tiles/keptTiles";
 
 export interface StoredProject {
   name: string;

@@ -3,9 +3,10 @@
 import { questionOf } from "../../kinds/kinds";
 import type { Question } from "../../kinds/parts/kind";
 import type { Args, CallName, Result } from "../../shared/calls";
-import { NO_DETAIL, type Results, type Resumed, type SelectionDetail } from "../../shared/figure";
 import type { SideTrace } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import { NO_DETAIL, type Resumed, type SelectionDetail } from "../../stages/figure";
+import type { Results } from "../../stages/list";
 
 /** Whose selection it is, and whom it asks. */
 export interface Inquirer {

@@ -1,7 +1,8 @@
 /** The page's selection: asks the core about what was picked, and makes the page's state a figure. */
+
 import { effect } from "@preact/signals";
 import { questionOf } from "../../kinds/kinds";
-import { type Figure, type FigureActions, NO_DETAIL } from "../../shared/figure";
+import { type Figure, type FigureActions, NO_DETAIL } from "../../stages/figure";
 import { actions, ask, hasResults } from "../session/session";
 import { runAll } from "../session/stageRuns";
 import { notify } from "../state/notices";

@@ -3,8 +3,8 @@
  * stages before it; those behind it follow once the parameter is let go.
  */
 import type { StageName } from "../../shared/stages";
+import { firstStageOf } from "../../stages/catalogue";
 import { stages } from "../state/stages";
-import { firstStageOf } from "./stageCatalogue";
 import { runAll, runTo, setParam } from "./stageRuns";
 
 /** Sets the parameter at a path of names. Where its stage has run, that runs again; while it does, the last value waits. */

@@ -1,9 +1,6 @@
 /** The plan of a flight: asked of the core from the headers of the photographs, before any of them is decoded. */
 import { CORE_VERSION } from "../../core/engine";
 import type { FlightPlan, LoadOptions } from "../../shared/records";
-import { loadOptions } from "../settings/loadOptions";
-import { params } from "../state/parameters";
-import { files, inspection, type RunOptions, replaceRunOptions, runOptions } from "../state/project";
 import {
   flightPlan,
   measuredHeights,
@@ -12,8 +9,11 @@ import {
   setDoneTiles,
   setMeasuredHeights,
   showFlightPlan,
-} from "../tiles/flight";
-import { KeptTiles } from "../tiles/keptTiles";
+} from "../project/tiles/flight";
+import { KeptTiles } from "../project/tiles/keptTiles";
+import { loadOptions } from "../settings/loadOptions";
+import { params } from "../state/parameters";
+import { files, inspection, type RunOptions, replaceRunOptions, runOptions } from "../state/project";
 import type { Turn } from "./actionQueue";
 import { engine } from "./session";
 

@@ -4,6 +4,8 @@ import { Engine, EngineError, isFatal } from "../../core/engine";
 import { WorkerPool } from "../../core/workerPool";
 import type { Args, CallName, Result } from "../../shared/calls";
 import type { SceneInfo } from "../../shared/records";
+import { stagesOf } from "../../stages/catalogue";
+import { flightPlan, showTileFraction, tileRun } from "../project/tiles/flight";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions } from "../settings/loadOptions";
 import { paramsOf } from "../settings/parameterForm";
@@ -20,10 +22,8 @@ import {
   stages,
   updateStage,
 } from "../state/stages";
-import { flightPlan, showTileFraction, tileRun } from "../tiles/flight";
 import { ActionQueue } from "./actionQueue";
 import { failureNotice } from "./failureNotice";
-import { stagesOf } from "./stageCatalogue";
 
 /** Whether the present worker holds the project's files, has the scene loaded, and was asked about them as they are wanted now. */
 const held = { files: false, scene: false, inspection: false, results: false };

@@ -2,10 +2,11 @@
 import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
 import type { ParamTree, ParamValue } from "../../shared/paramTree";
-import type { StageName } from "../../shared/stages";
+import type { Method, StageName } from "../../shared/stages";
+import { firstStageOf, mainTabOf, stagesOf, stageWords } from "../../stages/catalogue";
+import { fetchResults } from "../../stages/list";
 import { saveFile } from "../parts/saveFile";
 import { withParam } from "../settings/parameterForm";
-import { type Method, mainTabOf } from "../state/methods";
 import { announce, dismissOffers, notify } from "../state/notices";
 import { defaults, method, params, replaceParams } from "../state/parameters";
 import { files, runOptions } from "../state/project";
@@ -34,8 +35,6 @@ import type { Turn } from "./actionQueue";
 import { workerNotice } from "./failureNotice";
 import { beginFirstLook, endFirstLook } from "./firstLook";
 import { actions, engine, ensureScene, followCameras, hasResults, noteResults, workerPool } from "./session";
-import { firstStageOf, stagesOf, stageWords } from "./stageCatalogue";
-import { fetchResults } from "./stageResults";
 import { runTiles } from "./tiledRun";
 
 /** Runs every stage up to `target` that the worker has not run with the present parameters. */

@@ -6,8 +6,9 @@
 import { batch, effect } from "@preact/signals";
 import type { ParamValue } from "../../shared/paramTree";
 import { formatSelection, parseSelection, type Selection, type Standpoint } from "../../shared/selection";
+import { methodNamed, tabsOf } from "../../stages/catalogue";
+import type { Tab } from "../../stages/list";
 import { isBusy } from "../state/activity";
-import { methodNamed, TABS, type Tab } from "../state/methods";
 import { defaults, method, params } from "../state/parameters";
 import { isDemo } from "../state/project";
 import { resumeDetail, selectionDetail } from "../state/selectionDetail";
@@ -39,7 +40,7 @@ export function linkedParams(): Record<string, ParamValue> {
 
 export function parseLink(hash: string): Link {
   const fields = new URLSearchParams(hash.replace(/^#/, ""));
-  const tabs: readonly string[] = TABS.combined;
+  const tabs: readonly string[] = tabsOf("combined");
   const asked = fields.get("tab") ?? "";
   const named = methodNamed(fields.get("method"));
   const chosen = named === null ? {} : { method: named };
@@ -83,7 +84,7 @@ export function followState(): void {
   window.addEventListener("popstate", () => {
     const link = parseLink(location.hash);
     last = placeOf(link);
-    const isTabOfMethod = TABS[method.value].includes(link.tab ?? "images");
+    const isTabOfMethod = tabsOf(method.value).includes(link.tab ?? "images");
     batch(() => {
       resumeDetail(link);
       if (isTabOfMethod) {

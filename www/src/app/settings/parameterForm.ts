@@ -1,5 +1,7 @@
-/** The form of the parameters, made from whatever defaults the core gives: nothing is retyped here. */
+/** The form of the parameters, made from the core's own defaults, of what the stages of the method read. */
 import type { ParamGroup, ParamTree, ParamValue } from "../../shared/paramTree";
+import type { Method } from "../../shared/stages";
+import { isReadBy, methodOf, SECTION_TITLES } from "../../stages/catalogue";
 
 export interface ParamField {
   key: string;
@@ -30,47 +32,9 @@ const UNITS: readonly (readonly [string, string])[] = [
   ["_s", "s"],
 ];
 
-const TITLES: Record<string, string> = {
-  segments: "Segments",
-  matching: "Matching",
-  adjustment: "Adjustment of the views",
-  lines3d: "3D lines",
-  coplanar: "Coplanar sets",
-  adjacency: "Adjacency graphs",
-  sweep: "Half-plane sweep",
-  dense: "Dense planes",
-  roof: "Grouping and facets",
-  "roof.refine": "Regularisation and refinement",
-  texture: "Texture",
-  "objectspace.oris": "Regions (ORIS)",
-  "objectspace.windows": "Windows",
-  "objectspace.directions": "Main directions",
-  "objectspace.clusters": "Clusters",
-  "objectspace.planes": "Planes",
-};
-
 /** Fields that are one of a few words. */
 const CHOICES: Record<string, readonly string[]> = {
   acceptance: ["printed", "posterior", "both"],
-};
-
-/** The groups that a method reads; "combined" reads all. */
-const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
-  lines: [
-    "segments",
-    "matching",
-    "adjustment",
-    "lines3d",
-    "coplanar",
-    "adjacency",
-    "sweep",
-    "dense",
-    "roof",
-    "texture",
-  ],
-  coplanar: ["segments", "matching", "adjustment", "lines3d", "roof", "texture"],
-  adjacency: ["segments", "matching", "adjustment", "lines3d", "roof", "texture"],
-  rectangles: ["objectspace", "texture"],
 };
 
 /**
@@ -102,28 +66,30 @@ export function wantedFields(
   });
 }
 
-/** One section a group, groups inside groups apart, in the core's order; only what the method reads. */
+/** One section a group, groups inside groups apart, in the core's order; only what a stage of the method reads. */
 export function paramSections(defaults: ParamTree, values: ParamTree): ParamSection[] {
-  const groups = GROUPS_OF_METHOD[String(values["method"] ?? "lines")];
+  const method = methodOf(values);
   return Object.entries(defaults)
-    .filter(([name, fallback]) => isGroup(fallback) && (groups?.includes(name) ?? true))
-    .flatMap(([name, fallback]) => sectionsOf(name, fallback, values[name] ?? {}));
+    .filter(([, fallback]) => isGroup(fallback))
+    .flatMap(([name, fallback]) => sectionsOf(method, name, fallback, values[name] ?? {}));
 }
 
-function sectionsOf(path: string, defaults: ParamGroup, values: ParamGroup): ParamSection[] {
-  const own = Object.entries(defaults).filter(([, value]) => !isGroup(value));
+function sectionsOf(method: Method, path: string, defaults: ParamGroup, values: ParamGroup): ParamSection[] {
+  const own = Object.entries(defaults).filter(
+    ([key, value]) => !isGroup(value) && isReadBy(method, `${path}.${key}`),
+  );
   const inner = Object.entries(defaults).filter(([, value]) => isGroup(value));
   const fields = own.map(([key, fallback]) => paramField(key, fallback, values[key] ?? fallback));
   const section = {
     path,
-    title: TITLES[path] ?? innerTitle(path),
+    title: SECTION_TITLES[path] ?? innerTitle(path),
     fields,
     changed: fields.filter(({ changed }) => changed).length,
   };
   return [
     ...(fields.length > 0 ? [section] : []),
     ...inner.flatMap(([key, group]) =>
-      sectionsOf(`${path}.${key}`, group as ParamGroup, (values[key] ?? group) as ParamGroup),
+      sectionsOf(method, `${path}.${key}`, group as ParamGroup, (values[key] ?? group) as ParamGroup),
     ),
   ];
 }
@@ -131,7 +97,7 @@ function sectionsOf(path: string, defaults: ParamGroup, values: ParamGroup): Par
 /** "Segments: edgels". */
 function innerTitle(path: string): string {
   const at = path.lastIndexOf(".");
-  const outer = TITLES[path.slice(0, at)];
+  const outer = SECTION_TITLES[path.slice(0, at)];
   const own = path.slice(at + 1).replaceAll("_", " ");
   return outer === undefined ? words(path.slice(at + 1)) : `${outer}: ${own}`;
 }
@@ -153,7 +119,7 @@ export function paramName(path: string, withUnit = true): string {
   const at = path.lastIndexOf(".");
   const [group, key] = [path.slice(0, at), path.slice(at + 1)];
   const { label, unit } = labelAndUnit(key);
-  return `${TITLES[group] ?? innerTitle(group)}: ${label}${unit === "" || !withUnit ? "" : ` (${unit})`}`;
+  return `${SECTION_TITLES[group] ?? innerTitle(group)}: ${label}${unit === "" || !withUnit ? "" : ` (${unit})`}`;
 }
 
 /** What differs from the defaults, by path: what a link carries. */

@@ -1,11 +1,11 @@
 /** The layout: the entrance while nothing is open, else the workbench, or what of it fits into a hand. */
 import "./shell.css";
 import { useEffect, useState } from "preact/hooks";
-import { Entrance } from "../entrance/Entrance";
-import { isPhone } from "../screen/layout";
-import { showsEntrance, showsWorkbench } from "../screen/opening";
+import { Entrance } from "../project/entrance/Entrance";
 import { announcement } from "../state/notices";
 import { tab } from "../state/viewState";
+import { isPhone } from "../view/screen/layout";
+import { showsEntrance, showsWorkbench } from "../view/screen/opening";
 import { Header } from "./Header";
 import { Notices } from "./Notices";
 import { Phone } from "./Phone";

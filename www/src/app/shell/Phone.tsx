@@ -2,13 +2,13 @@
 import type { ComponentChildren } from "preact";
 import { Downloads } from "../project/Downloads";
 import { Project } from "../project/Project";
-import { showsEntrance } from "../screen/opening";
-import { StageRail } from "../stages/StageRail";
-import { StageView } from "../stages/StageView";
 import { tourStep } from "../state/tour";
 import { showTab, tab } from "../state/viewState";
 import { endTour, startTour } from "../tour/steps";
 import { TourPanel } from "../tour/TourPanel";
+import { showsEntrance } from "../view/screen/opening";
+import { StageRail } from "../view/stages/StageRail";
+import { StageView } from "../view/stages/StageView";
 import { Notices } from "./Notices";
 
 type Place = "model" | "photographs" | "tour";

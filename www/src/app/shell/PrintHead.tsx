@@ -1,8 +1,8 @@
 /** What a printed page has that the screen says elsewhere: which project, by which method, and what was found. */
 import { counted } from "../parts/counted";
 import "./print.css";
+import { stageWords } from "../../stages/catalogue";
 import { slopedArea } from "../parts/facetArea";
-import { stageWords } from "../session/stageCatalogue";
 import { method } from "../state/parameters";
 import { projectName } from "../state/project";
 import { mainResults } from "../state/results";

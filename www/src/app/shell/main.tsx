@@ -4,11 +4,11 @@ import "../parts/parts.css";
 import "../parts/charts.css";
 import { render } from "preact";
 import { storeProject, storeResults } from "../project/storedProject";
-import { setOpening } from "../screen/opening";
 import { askAboutSelection } from "../selection/selectionQueries";
 import { start } from "../session/session";
 import { followState } from "../settings/addressLink";
 import { restoreTextScale } from "../state/textScale";
+import { setOpening } from "../view/screen/opening";
 import { App } from "./App";
 import { isAwaited, restoreOpeningState } from "./openingState";
 

@@ -4,6 +4,7 @@ import { asksCore } from "../../kinds/kinds";
 import { lineEnds } from "../../kinds/parts/shapes";
 import type { Selection } from "../../shared/selection";
 import type { StageName } from "../../shared/stages";
+import { stageOfTab, tabsOf } from "../../stages/catalogue";
 import { openDemoIn, restoreIn } from "../project/projectActions";
 import {
   type LockedProject,
@@ -16,7 +17,6 @@ import type { Turn } from "../session/actionQueue";
 import { actions } from "../session/session";
 import { runStages } from "../session/stageRuns";
 import { opened } from "../settings/addressLink";
-import { stageOfTab, TABS, type Tab } from "../state/methods";
 import { dismissOffers, notify } from "../state/notices";
 import { method } from "../state/parameters";
 import { runOptions } from "../state/project";
@@ -61,7 +61,7 @@ async function restoreIt(turn: Turn): Promise<void> {
   if (isNewLine(opened.selection)) {
     await runStages(turn, "refinement");
   }
-  const tabs: readonly Tab[] = TABS[method.value];
+  const tabs = tabsOf(method.value);
   batch(() => {
     if (opened.tab !== null && tabs.includes(opened.tab)) {
       showTab(opened.tab);

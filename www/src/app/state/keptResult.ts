@@ -2,7 +2,7 @@
 import { type ReadonlySignal, signal } from "@preact/signals";
 import type { ParamTree } from "../../shared/paramTree";
 import type { Facet } from "../../shared/records";
-import type { Method } from "./methods";
+import type { Method } from "../../shared/stages";
 import type { Results } from "./results";
 
 export interface KeptResult {

@@ -1,7 +1,8 @@
 /** The parameters of the next run, among them the method, and their defaults. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import type { ParamTree } from "../../shared/paramTree";
-import { type Method, methodOf } from "./methods";
+import type { Method } from "../../shared/stages";
+import { methodOf } from "../../stages/catalogue";
 
 const coreDefaults = signal<ParamTree>({});
 const chosen = signal<ParamTree>({});

@@ -1,8 +1,9 @@
 /** What the stages have found. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
-import { NO_RESULTS, type Results } from "../../shared/figure";
 import type { Facet } from "../../shared/records";
-import { REGION_TABS, type Tab } from "./methods";
+import { REGION_TABS } from "../../stages/catalogue";
+import type { Tab } from "../../stages/list";
+import { NO_RESULTS, type Results } from "../../stages/list";
 import { method } from "./parameters";
 import { tab } from "./viewState";
 

@@ -1,6 +1,6 @@
 /** What the figures show of the selection beyond the results. */
 import { type ReadonlySignal, signal } from "@preact/signals";
-import { NO_DETAIL, type Resumed, type SelectionDetail } from "../../shared/figure";
+import { NO_DETAIL, type Resumed, type SelectionDetail } from "../../stages/figure";
 
 export { NO_DETAIL, type SelectionDetail };
 

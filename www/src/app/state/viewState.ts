@@ -1,7 +1,7 @@
 /** What is looked at: the tab, the view, the selection, and how the figures show them. */
 import { type ReadonlySignal, signal } from "@preact/signals";
 import type { Selection, Standpoint } from "../../shared/selection";
-import type { Tab } from "./methods";
+import type { Tab } from "../../stages/list";
 
 const present = {
   tab: signal<Tab>("images"),

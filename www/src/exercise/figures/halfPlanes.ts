@@ -1,6 +1,7 @@
 /** At a half-plane: the angle of the roof, and how fast the images disagree beside it. */
-import type { Figure } from "../../shared/figure";
+
 import type { Side, SideTrace } from "../../shared/records";
+import type { Figure } from "../../stages/figure";
 import type { Asked, FigureExercise, Outcome } from "./judgeFigure";
 import { edgeAlong, faceBeside, lineOf } from "./truth";
 

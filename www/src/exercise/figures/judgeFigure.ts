@@ -1,9 +1,8 @@
 /** Exercises that are done in a live figure: by what is picked or turned there, or by what is read off it. */
 import type { FigureState } from "../../element/figureState";
-import type { KindName } from "../../element/kinds";
 import type { Question } from "../../element/RidgelineFigure";
 import type { Args, Result } from "../../shared/calls";
-import type { Figure } from "../../shared/figure";
+import type { Figure } from "../../stages/figure";
 import type { About, Verdict } from "../judging/about";
 import type { Unit } from "../judging/quantity";
 
@@ -35,7 +34,7 @@ export interface FigureAnswer {
 export interface FigureExercise extends About {
   kind: "figure";
   text: string;
-  figure: KindName;
+  figure: string;
   asks: Asks;
   /** Where the figure is when the exercise begins: found in the scene, by its truth. */
   begin(of: Asked): Promise<Partial<FigureState>>;

@@ -1,6 +1,7 @@
 /** In the figures of W96, and in plan: main directions, regions, faces. */
-import type { Figure } from "../../shared/figure";
+
 import type { Vec2 } from "../../shared/records";
+import type { Figure } from "../../stages/figure";
 import { inUnit, kindOf, readQuantity } from "../judging/quantity";
 import type { FigureExercise, Outcome } from "./judgeFigure";
 import { EDGES, FACES, faceOver, imageIn, isInside, type Place, type RoofFace } from "./truth";

@@ -1,6 +1,7 @@
 /** Which two views know a line best: B99 3.4 and figure 9, by the covariance of the line in space. */
-import type { Figure } from "../../shared/figure";
+
 import type { ViewInfo } from "../../shared/records";
+import type { Figure } from "../../stages/figure";
 import type { FigureExercise, Outcome } from "./judgeFigure";
 import { edgeAlong, imageIn, lineOf, type Point } from "./truth";
 

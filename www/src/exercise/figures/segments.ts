@@ -1,6 +1,7 @@
 /** In the photographs: which edge of a roof a segment shows, and which segment of another view shows the same. */
-import type { Figure } from "../../shared/figure";
+
 import type { PairCandidate } from "../../shared/records";
+import type { Figure } from "../../stages/figure";
 import type { Asked, FigureExercise, Outcome } from "./judgeFigure";
 import { distanceFrom, edgeShown, type RoofEdge, type Stretch, segmentOf, shows } from "./truth";
 

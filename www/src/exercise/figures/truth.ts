@@ -2,8 +2,9 @@
  * What is true of the demo scene: the roofs from which its photographs were rendered (`demoTruth.json`, by scripts/demoTruth.mjs), and
  * which of them an image line, a 3D line or a facet shows. Metres, in the scene's local frame; pixels.
  */
-import type { Figure } from "../../shared/figure";
+
 import type { Side, ViewInfo } from "../../shared/records";
+import type { Figure } from "../../stages/figure";
 import demo from "./demoTruth.json";
 
 export type Point = readonly [x: number, y: number, z: number];

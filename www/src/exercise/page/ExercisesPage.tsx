@@ -1,9 +1,9 @@
 /** All exercises by lesson, the one that is chosen, and the glossary. The chosen one is what stands behind "#" in the address. */
 import "./page.css";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { Glossary } from "../../app/glossary/Glossary";
 import { counted } from "../../app/parts/counted";
 import { theme } from "../../app/state/theme";
+import { Glossary } from "../../app/words/Glossary";
 import { type AnyExercise, EXERCISES, exerciseNamed, KIND_WORDS } from "../exercises";
 import { LESSONS, type Lesson } from "../judging/about";
 import { PageFrame } from "./PageFrame";

@@ -1,9 +1,9 @@
 /** For teachers: all exercises with their answers and the mistakes that they know, and a sheet of those that are chosen. */
 import "./page.css";
 import { useState } from "preact/hooks";
-import { Linked } from "../../app/glossary/Term";
 import { counted } from "../../app/parts/counted";
 import { saveFile } from "../../app/parts/saveFile";
+import { Linked } from "../../app/words/Term";
 import { type AnyExercise, EXERCISES, KIND_WORDS, mistakesOf } from "../exercises";
 import type { FigureExercise } from "../figures/judgeFigure";
 import { LESSONS } from "../judging/about";

@@ -1,7 +1,7 @@
 /** The answers of the exercises in figures, as the demo scene has them: the core is asked, but nothing is drawn. */
 import { FIRST_STATE, type FigureState } from "../../element/figureState";
 import { FigureStore } from "../../element/figureStore";
-import { KINDS } from "../../element/kinds";
+import { type Kind, kindOf } from "../../element/kinds";
 import { fetchScene, sceneUrl } from "../../element/sceneFiles";
 import { sceneOf } from "../../element/sharedScene";
 import type { FigureExercise } from "../figures/judgeFigure";
@@ -11,7 +11,7 @@ const LONGEST_MS = 20_000;
 
 /** In words. */
 export async function answerOnDemo(exercise: FigureExercise): Promise<string> {
-  const { method, stage, begin } = KINDS[exercise.figure];
+  const { method, stage, begin } = kindOf(exercise.figure) as Kind;
   const place = await sitePlace();
   const url = sceneUrl("demo", place.demoUrl, document.baseURI);
   const scene = sceneOf(place, url, method, async () => ({ files: await fetchScene(url) }));

@@ -1,5 +1,5 @@
 /** An exercise sheet: one HTML file that prints, without answers or with them. */
-import { plain } from "../../app/glossary/linkedText";
+import { plain } from "../../app/words/linkedText";
 import { type AnyExercise, mistakesOf } from "../exercises";
 import { LESSONS } from "../judging/about";
 import { drawOf } from "../judging/judgeNumber";

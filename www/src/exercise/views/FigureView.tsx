@@ -1,6 +1,6 @@
 /** An exercise that is done in a live figure of the demo scene. */
 import { useEffect, useRef, useState } from "preact/hooks";
-import { Linked } from "../../app/glossary/Term";
+import { Linked } from "../../app/words/Term";
 import type { RidgelineFigure } from "../../element/RidgelineFigure";
 import { type Asked, type FigureAnswer, type FigureExercise, judgeFigure } from "../figures/judgeFigure";
 import { isDemo } from "../figures/truth";

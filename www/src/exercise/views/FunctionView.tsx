@@ -1,6 +1,6 @@
 /** A function that is to be written: an editor, and what the planted configurations say of it. */
 import { useState } from "preact/hooks";
-import { Linked } from "../../app/glossary/Term";
+import { Linked } from "../../app/words/Term";
 import type { AnyFunction } from "../functions/index";
 import type { Verdict } from "../judging/about";
 import { judge } from "../judging/judge";

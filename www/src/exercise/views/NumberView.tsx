@@ -1,6 +1,6 @@
 /** A number with its unit: values of one's own, a field, and what is said of the answer. */
 import { useMemo, useState } from "preact/hooks";
-import { Linked } from "../../app/glossary/Term";
+import { Linked } from "../../app/words/Term";
 import type { Verdict } from "../judging/about";
 import { drawOf, judgeNumber, type NumberExercise } from "../judging/judgeNumber";
 import { AnswerField } from "./AnswerField";

@@ -1,6 +1,6 @@
 /** A region of a view (W96 3.3). */
 import { grouped } from "../../app/parts/numberText";
-import { viewName } from "../../shared/figure";
+import { viewName } from "../../stages/figure";
 import type { Kind } from "../parts/kind";
 import { AREA } from "../parts/marks";
 import { allOf, type Row } from "../parts/rows";

@@ -1,6 +1,7 @@
 /** A line of edgels that is no segment (B99 3.2). */
-import { viewName } from "../../shared/figure";
+
 import { REJECTED_STRIDE } from "../../shared/flatArrays";
+import { viewName } from "../../stages/figure";
 import type { Kind } from "../parts/kind";
 import { CHOSEN, endsIn } from "../parts/marks";
 import { allOf } from "../parts/rows";

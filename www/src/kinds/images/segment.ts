@@ -1,9 +1,10 @@
 /** A straight segment of a view (B99 3.2), and what matching made of it (B99 3.1 to 3.4). */
 import { outcomeWords } from "../../app/parts/reasonText";
-import { type Results, viewName } from "../../shared/figure";
 import { SEGMENT_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import type { Vec2, Vec3, ViewInfo } from "../../shared/records";
+import { viewName } from "../../stages/figure";
+import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { CHOSEN, endsIn, type Mark, SELECTED_PX, THIN_PX } from "../parts/marks";
 import { allOf, degreesText, links, type Row } from "../parts/rows";

@@ -1,5 +1,5 @@
 /** A photograph. */
-import { viewName } from "../../shared/figure";
+import { viewName } from "../../stages/figure";
 import type { Kind } from "../parts/kind";
 import { numbered, worldText } from "../parts/rows";
 

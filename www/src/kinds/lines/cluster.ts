@@ -1,8 +1,8 @@
 /** A rejected cluster of a cluster plane (W96 3.5); the selected ones are 3D lines. */
 import { degreesOf } from "../../app/parts/numberText";
-import type { Results } from "../../shared/figure";
 import type { Vec3 } from "../../shared/records";
 import type { Picked } from "../../shared/selection";
+import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { allOf } from "../parts/rows";
 import { openLine } from "../parts/shapes";

@@ -1,5 +1,5 @@
 /** A half-plane, found by Sim(theta) (B99 4.1). */
-import { viewName } from "../../shared/figure";
+import { viewName } from "../../stages/figure";
 import { fanRing } from "../../viewer/scene/fanRing";
 import type { Kind } from "../parts/kind";
 import { degreesText, links, linksWhere, slopeText } from "../parts/rows";

@@ -1,8 +1,8 @@
 /** A line in space: what made it, view by view, and what it is part of. */
 import { CONTRADICTION_WORDS, ORIGIN_WORDS, REJECTION_WORDS } from "../../app/parts/reasonText";
-import { viewName } from "../../shared/figure";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { HalfPlane, LineRecord } from "../../shared/records";
+import { viewName } from "../../stages/figure";
 import { evidenceRow, probabilityRow } from "../parts/evidenceRows";
 import type { About, Kind } from "../parts/kind";
 import {

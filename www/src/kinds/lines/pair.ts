@@ -1,8 +1,8 @@
 /** A pair of parallel lines in space, its window, and the image lines inside it (W96 3.6, figures 10 and 11). */
 import { PAIR_WORDS } from "../../app/parts/reasonText";
-import type { Results } from "../../shared/figure";
 import { PALETTE } from "../../shared/palette";
 import type { PlaneCandidate, PlaneTrace, Vec3 } from "../../shared/records";
+import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { type Mark, type Seen, seenFrom, shapeMarks } from "../parts/marks";
 import { indicesOf, links, numbered, type Row } from "../parts/rows";

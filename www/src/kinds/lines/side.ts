@@ -1,7 +1,7 @@
 /** A side of a 3D line, whether it has a half-plane or not (B99 4.1). */
 import { REJECTION_WORDS } from "../../app/parts/reasonText";
-import type { Results } from "../../shared/figure";
 import type { Selection } from "../../shared/selection";
+import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { indicesOf, links } from "../parts/rows";
 import { linesShape } from "../parts/shapes";

@@ -1,8 +1,9 @@
 /** What the page knows of a kind of things that can be picked. Each kind is a file; what it leaves out is none. */
-import type { Figure, Results } from "../../shared/figure";
+
 import type { Side } from "../../shared/records";
 import type { KindName, Picked, Selection } from "../../shared/selection";
-import type { StageName } from "../../shared/stages";
+import type { Figure } from "../../stages/figure";
+import type { Results, Tab } from "../../stages/list";
 import type { Mark, Seen } from "./marks";
 import type { Rows } from "./rows";
 import type { Shape } from "./shapes";
@@ -14,9 +15,6 @@ export type About = Pick<Figure, "scene" | "results" | "params" | "detail" | "vi
 export type Question =
   | { about: "segment"; view: number; index: number }
   | { about: "side"; line: number; side: Side };
-
-/** The views of the stages, and beside them the photographs. */
-export type Tab = StageName | "images";
 
 export interface Kind<K extends KindName = KindName> {
   /** The tabs in which these things are gone through as long as nothing is picked. */

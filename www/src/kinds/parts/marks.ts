@@ -2,9 +2,10 @@
  * What things look like in an image: polylines in pixels. Things in space are projected with the view's own matrix, as the
  * viewer's graphics card does; everything else is drawn as the core gave it.
  */
-import type { Figure } from "../../shared/figure";
+
 import { PALETTE } from "../../shared/palette";
 import type { Vec2, Vec3, ViewInfo } from "../../shared/records";
+import type { Figure } from "../../stages/figure";
 import type { Shape } from "./shapes";
 
 /** A polyline over an image, pixels. */

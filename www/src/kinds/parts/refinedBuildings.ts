@@ -1,6 +1,7 @@
 /** Which facets refinement took from which buildings, and how it judges relations (B99 2). */
-import type { Results } from "../../shared/figure";
+
 import type { ParamTree } from "../../shared/paramTree";
+import type { Results } from "../../stages/list";
 
 /** The facets of the model that refinement made of a building. */
 export function refinedFacets(building: number, found: Refined): number[] {

@@ -1,8 +1,8 @@
 /** The rows of the inspector, and the things that they lead on to. */
 import { degreesOf, slopeOf } from "../../app/parts/numberText";
-import type { Results } from "../../shared/figure";
 import type { Facet, PlaneGroup, SceneInfo, Vec3 } from "../../shared/records";
 import type { IndexedKind, Selection } from "../../shared/selection";
+import type { Results } from "../../stages/list";
 
 /** A number of the picked thing, things to go on to (they made it or it made them), or bars. */
 export type Row = readonly [label: string, value: string | readonly Related[] | Bars, note?: string];

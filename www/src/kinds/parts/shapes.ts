@@ -1,7 +1,8 @@
 /** What things are in space: polylines in the local frame, which light up in every image and in the 3D view. */
-import type { Results } from "../../shared/figure";
+
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { Vec3 } from "../../shared/records";
+import type { Results } from "../../stages/list";
 
 /** A line, a closed outline with what is inside it, or the outline of what was there before. */
 export interface Shape {

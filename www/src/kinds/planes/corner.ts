@@ -1,8 +1,8 @@
 /** A corner in space with its edges and regions (B99 2: Bonn). */
 import { counted } from "../../app/parts/counted";
-import type { Results } from "../../shared/figure";
 import { edgesOfCorner, isVerifiedPlane } from "../../shared/proposed";
 import { cornerPlanesOf } from "../../shared/records";
+import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { groupsAndFacets, indicesOf, links, numbered } from "../parts/rows";
 import { areas, openLine } from "../parts/shapes";

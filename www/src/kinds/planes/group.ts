@@ -1,5 +1,5 @@
 /** A group of coplanar lines, half-planes and other proposals (B99 4.2). */
-import type { Results } from "../../shared/figure";
+
 import {
   coplanarSetsOf,
   cornerPlanesOf,
@@ -8,6 +8,7 @@ import {
   type PlaneGroup,
   rectanglesOf,
 } from "../../shared/records";
+import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { indicesOf, links, numbered, type Rows, slopeText } from "../parts/rows";
 import { linesShape } from "../parts/shapes";

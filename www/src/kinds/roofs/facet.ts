@@ -1,8 +1,8 @@
 /** A facet of the model (B99 4.3). */
 import { slopedArea } from "../../app/parts/facetArea";
 import { refinementWords } from "../../app/parts/reasonText";
-import type { Results } from "../../shared/figure";
 import { type Facet, isMadeFrom } from "../../shared/records";
+import type { Results } from "../../stages/list";
 import { probabilityRow } from "../parts/evidenceRows";
 import type { Kind } from "../parts/kind";
 import { buildingOfFacet } from "../parts/refinedBuildings";

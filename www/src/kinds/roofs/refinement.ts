@@ -1,7 +1,7 @@
 /** What refinement made of a building (B99 2). */
 import { refinementWords } from "../../app/parts/reasonText";
-import type { Results } from "../../shared/figure";
 import { outlinesBefore } from "../../shared/proposed";
+import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { OUTLINE, shapeMarks } from "../parts/marks";
 import { refinedFacets } from "../parts/refinedBuildings";

@@ -1,6 +1,8 @@
 /** Lesson 3: are two windows the same piece of the world? */
+
 import { computed, signal } from "@preact/signals";
-import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Options, Plot, Slider } from "../parts/draw";
+import { Choice } from "../../app/parts/Choice";
+import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { metres, num, pixels } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
@@ -92,9 +94,7 @@ function LightFigure({ isRevealed }: { isRevealed: boolean }) {
         symbol="gain"
         label="contrast"
         value={light.value.gain}
-        min={0.2}
-        max={1.4}
-        step={0.05}
+        range={[0.2, 1.4, 0.05]}
         says={num(light.value.gain, 2)}
         onInput={(gain) => {
           light.value = { ...light.value, gain };
@@ -104,9 +104,7 @@ function LightFigure({ isRevealed }: { isRevealed: boolean }) {
         symbol="offset"
         label="brightness"
         value={light.value.offset}
-        min={-60}
-        max={80}
-        step={2}
+        range={[-60, 80, 2]}
         says={num(light.value.offset, 0)}
         onInput={(offset) => {
           light.value = { ...light.value, offset };
@@ -199,17 +197,7 @@ function AlongFigure() {
           </>
         )}
       </Plot>
-      <Slider
-        label="side of the window"
-        value={size.value}
-        min={3}
-        max={31}
-        step={2}
-        says={pixels(size.value, 0)}
-        onInput={(value) => {
-          size.value = value;
-        }}
-      />
+      <Slider label="side of the window" of={size} range={[3, 31, 2]} says={pixels(size.value, 0)} />
     </>
   );
 }
@@ -232,17 +220,14 @@ function WarpFigure() {
   const values = shaped(shape.value);
   return (
     <>
-      <Options
-        label="How the window is taken"
-        all={[
+      <Choice
+        legend="How the window is taken"
+        choices={[
           ["none", "As a square"],
           ["level", "By a level plane"],
           ["roof", "By the roof's plane"],
         ]}
-        value={shape.value}
-        onPick={(value) => {
-          shape.value = value;
-        }}
+        of={shape}
       />
       <div class="windows-row">
         <Card values={large.value} size={WARPED} colour={1} title="First view" />
@@ -339,17 +324,14 @@ const kept = () => edgels.value.filter((c) => c > THRESHOLD);
 function EdgelFigure() {
   return (
     <>
-      <Options
-        label="Side of the line"
-        all={[
+      <Choice
+        legend="Side of the line"
+        choices={[
           ["both", "Whole windows"],
           ["roof", "The roof's side"],
           ["ground", "The ground's side"],
         ]}
-        value={side.value}
-        onPick={(value) => {
-          side.value = value;
-        }}
+        of={side}
       />
       <Plot
         x={{ min: 0, max: EDGELS }}

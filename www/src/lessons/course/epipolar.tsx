@@ -198,9 +198,7 @@ function PencilFigure({ isRevealed }: { isRevealed: boolean }) {
         <Slider
           label="direction from the first camera to the second"
           value={rise.value / DEGREE}
-          min={0}
-          max={90}
-          step={1}
+          range={[0, 90, 1]}
           says={`${degrees(rise.value)} upwards`}
           onInput={(value) => {
             rise.value = value * DEGREE;

@@ -123,9 +123,7 @@ function ViewSliders() {
           symbol="c"
           label={`in view ${i + 1}`}
           value={c}
-          min={-0.5}
-          max={0.95}
-          step={0.01}
+          range={[-0.5, 0.95, 0.01]}
           says={`${num(c, 2)}: ${signed(natsOf(c))} nats`}
           onInput={(value) => {
             views.value = views.value.with(i, value);
@@ -150,14 +148,9 @@ function SumFigure() {
         <ViewSliders />
         <Slider
           label="true before anything is seen"
-          value={prior.value}
-          min={0.01}
-          max={0.9}
-          step={0.01}
+          of={prior}
+          range={[0.01, 0.9, 0.01]}
           says={percent(prior.value)}
-          onInput={(value) => {
-            prior.value = value;
-          }}
         />
       </div>
     </>
@@ -202,26 +195,13 @@ function WeakFigure({ isRevealed }: { isRevealed: boolean }) {
             symbol="mu"
             label="in each view"
             value={z}
-            min={0.5}
-            max={4}
-            step={0.1}
+            range={[0.5, 4, 0.1]}
             says={`${num(z)} σ`}
             onInput={(value) => {
               contrast.value = value;
             }}
           />
-          <Slider
-            symbol="N"
-            label="views"
-            value={viewCount.value}
-            min={1}
-            max={6}
-            step={1}
-            says={num(viewCount.value, 0)}
-            onInput={(value) => {
-              viewCount.value = value;
-            }}
-          />
+          <Slider symbol="N" label="views" of={viewCount} range={[1, 6, 1]} says={num(viewCount.value, 0)} />
         </>
       )}
     </>
@@ -245,9 +225,7 @@ function HiddenFigure({ isRevealed }: { isRevealed: boolean }) {
           symbol="q"
           label="view does not see the place"
           value={q}
-          min={0}
-          max={0.5}
-          step={0.01}
+          range={[0, 0.5, 0.01]}
           says={percent(q)}
           onInput={(value) => {
             hidden.value = value;
@@ -305,14 +283,9 @@ function ReliabilityFigure({ isRevealed }: { isRevealed: boolean }) {
       {isRevealed && (
         <Slider
           label="times that each window is counted"
-          value={copies.value}
-          min={1}
-          max={6}
-          step={1}
+          of={copies}
+          range={[1, 6, 1]}
           says={num(copies.value, 0)}
-          onInput={(value) => {
-            copies.value = value;
-          }}
         />
       )}
     </>

@@ -1,6 +1,8 @@
 /** Lesson 7: a plane maps image to image; one angle of it is free, and the images choose it. */
+
 import { computed, signal } from "@preact/signals";
-import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Options, Plot, Slider } from "../parts/draw";
+import { Choice } from "../../app/parts/Choice";
+import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { DEGREE, degrees, num, pixels, place } from "../parts/say";
 import { ImagePane } from "../parts/scene";
@@ -32,16 +34,13 @@ function PlaneFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
       {isRevealed && (
-        <Options
-          label="Plane of the homography"
-          all={[
+        <Choice
+          legend="Plane of the homography"
+          choices={[
             ["roof", "H of the south roof"],
             ["ground", "H of the ground"],
           ]}
-          value={plane.value}
-          onPick={(value) => {
-            plane.value = value;
-          }}
+          of={plane}
         />
       )}
       <div class="pair">
@@ -289,28 +288,20 @@ const failed = () => {
 function AcceptFigure() {
   return (
     <>
-      <Options
-        label="Side of the eave"
-        all={[
+      <Choice
+        legend="Side of the eave"
+        choices={[
           ["roof", "The roof's side"],
           ["ground", "The other side"],
         ]}
-        value={side.value}
-        onPick={(value) => {
-          side.value = value;
-        }}
+        of={side}
       />
       <SimPlot curves={[{ values: curveOf(side.value, 1), class: "s6" }]} />
       <Slider
         label="texture of the roof"
-        value={texture.value}
-        min={0}
-        max={1}
-        step={0.25}
+        of={texture}
+        range={[0, 1, 0.25]}
         says={`${num(100 * texture.value, 0)} %`}
-        onInput={(value) => {
-          texture.value = value;
-        }}
       />
     </>
   );

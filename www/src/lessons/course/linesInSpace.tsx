@@ -1,7 +1,9 @@
 /** Lesson 6: a line in space has four numbers, and its ends are not among them. */
+
 import { signal } from "@preact/signals";
+import { Choice } from "../../app/parts/Choice";
 import { counted } from "../../app/parts/counted";
-import { Curve, Dot, Handle, Line, Options, Plot, Slider } from "../parts/draw";
+import { Curve, Dot, Handle, Line, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { DEGREE, degrees, metres, num, pixels } from "../parts/say";
 import { ImagePane, OBSERVER, PlaneOfLine, Space, seen } from "../parts/scene";
@@ -255,16 +257,13 @@ function AzimuthFigure() {
       .filter(([, value]) => value < most);
   return (
     <>
-      <Options
-        label="Strips"
-        all={[
+      <Choice
+        legend="Strips"
+        choices={[
           ["one", "One strip"],
           ["two", "A view from the next strip"],
         ]}
-        value={strips.value}
-        onPick={(value) => {
-          strips.value = value;
-        }}
+        of={strips}
       />
       <Plot
         x={{ min: 0, max: 90 }}
@@ -362,14 +361,9 @@ function GrowFigure() {
       </Plot>
       <Slider
         label="views that must show a place"
-        value={needed.value}
-        min={1}
-        max={3}
-        step={1}
+        of={needed}
+        range={[1, 3, 1]}
         says={num(needed.value, 0)}
-        onInput={(value) => {
-          needed.value = value;
-        }}
       />
     </>
   );

@@ -55,18 +55,7 @@ function CountFigure({ isRevealed }: { isRevealed: boolean }) {
         )}
       </Plot>
       {isRevealed && (
-        <Slider
-          symbol="N"
-          label="views"
-          value={viewCount.value}
-          min={2}
-          max={10}
-          step={1}
-          says={num(viewCount.value, 0)}
-          onInput={(value) => {
-            viewCount.value = value;
-          }}
-        />
+        <Slider symbol="N" label="views" of={viewCount} range={[2, 10, 1]} says={num(viewCount.value, 0)} />
       )}
     </>
   );
@@ -140,14 +129,9 @@ function DirectionFigure({ isRevealed }: { isRevealed: boolean }) {
         <Slider
           symbol="N"
           label="views in the histogram"
-          value={used.value}
-          min={1}
-          max={6}
-          step={1}
+          of={used}
+          range={[1, 6, 1]}
           says={num(used.value, 0)}
-          onInput={(value) => {
-            used.value = value;
-          }}
         />
       )}
     </>
@@ -427,18 +411,7 @@ function CountBreaksFigure({ isRevealed }: { isRevealed: boolean }) {
         )}
       </Plot>
       {isRevealed && (
-        <Slider
-          symbol="k"
-          label="breaks"
-          value={count.value}
-          min={0}
-          max={MOST_BREAKS}
-          step={1}
-          says={num(count.value, 0)}
-          onInput={(value) => {
-            count.value = value;
-          }}
-        />
+        <Slider symbol="k" label="breaks" of={count} range={[0, MOST_BREAKS, 1]} says={num(count.value, 0)} />
       )}
     </>
   );

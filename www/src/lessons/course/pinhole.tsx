@@ -1,6 +1,8 @@
 /** Lesson 1: what a camera does with a point, and why one matrix says it. */
+
 import { signal } from "@preact/signals";
-import { Dot, Drawing, Handle, Label, Line, Options, Shape, Slider } from "../parts/draw";
+import { Choice } from "../../app/parts/Choice";
+import { Dot, Drawing, Handle, Label, Line, Shape, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { degrees, metres, num, pixels, place } from "../parts/say";
 import { ImagePane, inFrame, OBSERVER, Space, seen } from "../parts/scene";
@@ -193,9 +195,7 @@ function CalibrationFigure() {
         symbol="f"
         label="principal distance"
         value={f}
-        min={200}
-        max={900}
-        step={10}
+        range={[200, 900, 10]}
         says={pixels(f, 0)}
         onInput={(value) => set({ f: value })}
       />
@@ -227,9 +227,7 @@ function OrientationFigure() {
       <Slider
         label="height"
         value={camera.C[2]}
-        min={26}
-        max={48}
-        step={1}
+        range={[26, 48, 1]}
         says={metres(camera.C[2], 0)}
         onInput={(value) => {
           centre.value = [centre.value[0], centre.value[1], value];
@@ -252,17 +250,14 @@ function ProductFigure() {
   const x = imageOf(FIRST, X);
   return (
     <>
-      <Options
-        label="Point"
-        all={[
+      <Choice
+        legend="Point"
+        choices={[
           ["ridge", "Ridge"],
           ["eave", "Eave"],
           ["foot", "Foot of the wall"],
         ]}
-        value={picked.value}
-        onPick={(value) => {
-          picked.value = value;
-        }}
+        of={picked}
       />
       <ImagePane camera={FIRST} title="The point in the image" label="The house and the point" colour={1}>
         <Shape points={[[0, 0], [x[0], 0], x, [0, x[1]]]} class="s1 measure" />

@@ -151,9 +151,7 @@ function EnvelopeFigure({ isRevealed }: { isRevealed: boolean }) {
               <Slider
                 label={side}
                 value={(slopes.value[side] ?? 0) / DEGREE}
-                min={0}
-                max={70}
-                step={1}
+                range={[0, 70, 1]}
                 says={slopeText(side)}
                 onInput={(value) => {
                   slopes.value = { ...slopes.value, [side]: value < 8 ? null : value * DEGREE };
@@ -263,9 +261,7 @@ function ConflictFigure({ isRevealed }: { isRevealed: boolean }) {
           symbol="tau"
           label="of the bridge"
           value={bridge.value.real}
-          min={0.05}
-          max={1}
-          step={0.05}
+          range={[0.05, 1, 0.05]}
           says={num(bridge.value.real, 2)}
           onInput={(real) => {
             bridge.value = { ...bridge.value, real };

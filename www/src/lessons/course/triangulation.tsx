@@ -220,9 +220,7 @@ function RuleFigure() {
         symbol="B"
         label="baseline"
         value={B}
-        min={3}
-        max={70}
-        step={1}
+        range={[3, 70, 1]}
         says={metres(B, 0)}
         onInput={(value) => {
           baseline.value = value;
@@ -248,14 +246,9 @@ function ViewsFigure({ isRevealed }: { isRevealed: boolean }) {
         <Slider
           symbol="N"
           label="views over the same 40 m"
-          value={views.value}
-          min={2}
-          max={8}
-          step={1}
+          of={views}
+          range={[2, 8, 1]}
           says={num(views.value, 0)}
-          onInput={(value) => {
-            views.value = value;
-          }}
         />
       )}
     </>
@@ -274,27 +267,11 @@ function CovarianceFigure() {
       <Slider
         symbol="sigma"
         label="of the image points"
-        value={sigma.value}
-        min={0.1}
-        max={1.5}
-        step={0.05}
+        of={sigma}
+        range={[0.1, 1.5, 0.05]}
         says={pixels(sigma.value, 2)}
-        onInput={(value) => {
-          sigma.value = value;
-        }}
       />
-      <Slider
-        symbol="B"
-        label="baseline"
-        value={baseline.value}
-        min={3}
-        max={70}
-        step={1}
-        says={metres(baseline.value, 0)}
-        onInput={(value) => {
-          baseline.value = value;
-        }}
-      />
+      <Slider symbol="B" label="baseline" of={baseline} range={[3, 70, 1]} says={metres(baseline.value, 0)} />
     </>
   );
 }

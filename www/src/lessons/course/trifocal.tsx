@@ -1,6 +1,8 @@
 /** Lesson 4: two views never contradict each other about a line; the third one can. */
+
 import { signal } from "@preact/signals";
-import { Dot, Handle, Label, Line, Options, Slider } from "../parts/draw";
+import { Choice } from "../../app/parts/Choice";
+import { Dot, Handle, Label, Line, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { DEGREE, degrees, metres, pixels, place } from "../parts/say";
 import { ImagePane, PlaneOfLine, Space, seen } from "../parts/scene";
@@ -166,17 +168,14 @@ function DecoyFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
       {isRevealed && (
-        <Options
-          label="Candidate"
-          all={[
+        <Choice
+          legend="Candidate"
+          choices={[
             ["A", "A"],
             ["B", "B"],
             ["C", "C"],
           ]}
-          value={decoy.value}
-          onPick={(value) => {
-            decoy.value = value;
-          }}
+          of={decoy}
         />
       )}
       <div class="pair three">
@@ -257,9 +256,7 @@ function DegenerateFigure() {
         symbol="phi"
         label="between edge and baseline"
         value={azimuth.value / DEGREE}
-        min={1}
-        max={90}
-        step={1}
+        range={[1, 90, 1]}
         says={degrees(azimuth.value)}
         onInput={(value) => {
           azimuth.value = value * DEGREE;

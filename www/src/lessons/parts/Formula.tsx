@@ -1,37 +1,9 @@
-/** Formulas and paragraphs as they are shown: MathML, each symbol in its colour. */
-import type { VNode } from "preact";
-import { type MathNode, parseFormula, piecesOf } from "./formula";
-
-/** A bracket keeps its size: MathML would stretch it to the height of its row. */
-const LOW = { stretchy: "false" } as unknown as { stretchy: boolean };
+/** Formulas and paragraphs of the lessons as they are shown. */
+import { MathMl } from "../../app/words/Formula";
+import { lessonFormula, piecesOf } from "./formula";
 
 export function Formula({ text, block = false }: { text: string; block?: boolean }) {
-  return (
-    <math display={block ? "block" : "inline"} class={block ? "formula" : ""}>
-      <Node of={parseFormula(text)} />
-    </math>
-  );
-}
-
-function Node({ of }: { of: MathNode }): VNode {
-  const inside = of.text ?? of.children.map((one, i) => <Node key={i.toString()} of={one} />);
-  const { symbol } = of;
-  switch (of.tag) {
-    case "mi": {
-      const { colour = 0, form = "name" } = symbol ?? {};
-      return (
-        <mi mathvariant="normal" class={`s${colour} ${form}`}>
-          {inside}
-        </mi>
-      );
-    }
-    case "mo":
-      return <mo {...(of.isHigh !== true && LOW)}>{inside}</mo>;
-    default: {
-      const Tag = of.tag;
-      return <Tag>{inside}</Tag>;
-    }
-  }
+  return <MathMl of={lessonFormula(text)} block={block} />;
 }
 
 export function Paragraph({ text }: { text: string }) {

@@ -1,4 +1,5 @@
 /** Parts of drawn figures: SVG whose type keeps its size, things that are dragged by pointer and key, sliders, plots. */
+import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useId, useRef } from "preact/hooks";
 import { axesOf, type Frame, pathOf, type Scale, ticks } from "../../app/parts/charts";
@@ -156,20 +157,16 @@ export function Handle({ at, label, says, value, onMove, class: name = "s6", ste
   );
 }
 
-interface SliderProps {
+type SliderProps = {
   /** The symbol that it moves. */
   symbol?: string;
   label: string;
-  value: number;
-  min: number;
-  max: number;
-  step: number;
+  range: readonly [min: number, max: number, step: number];
   /** The value in words, with its unit. */
   says: string;
-  onInput: (value: number) => void;
-}
+} & ({ of: Signal<number> } | { value: number; onInput: (value: number) => void });
 
-export function Slider({ symbol, label, value, min, max, step, says, onInput }: SliderProps) {
+export function Slider({ symbol, label, range: [min, max, step], says, ...moved }: SliderProps) {
   const id = useId();
   return (
     <div class="slider">
@@ -185,35 +182,18 @@ export function Slider({ symbol, label, value, min, max, step, says, onInput }: 
         min={min}
         max={max}
         step={step}
-        value={value}
+        value={"of" in moved ? moved.of.value : moved.value}
         aria-valuetext={says}
-        onInput={(event) => onInput(Number(event.currentTarget.value))}
+        onInput={(event) => {
+          const value = Number(event.currentTarget.value);
+          if ("of" in moved) {
+            moved.of.value = value;
+          } else {
+            moved.onInput(value);
+          }
+        }}
       />
     </div>
-  );
-}
-
-/** One of several, beside each other. */
-export function Options<T extends string>(props: {
-  label: string;
-  all: readonly (readonly [T, string])[];
-  value: T;
-  onPick: (value: T) => void;
-}) {
-  return (
-    <fieldset class="choice">
-      <legend class="visually-hidden">{props.label}</legend>
-      {props.all.map(([value, title]) => (
-        <button
-          key={value}
-          type="button"
-          aria-pressed={props.value === value}
-          onClick={() => props.onPick(value)}
-        >
-          {title}
-        </button>
-      ))}
-    </fieldset>
   );
 }
 

@@ -2,14 +2,9 @@
  * The symbols of all lessons: one letter, one meaning, one colour, in text, formula and figure. Colours go by what a thing belongs to:
  * 1 the first view, 2 the second, 3 the third, 4 space, 5 cameras, 6 what the reader turns, 7 errors; 0 has none.
  */
-export interface MathSymbol {
-  /** As it is written. */
-  glyph: string;
-  /** Vectors are upright and bold, scalars and matrices slanted, names upright. */
-  form: "vector" | "letter" | "name";
-  sub?: string;
-  sup?: string;
-  colour: 0 | 1 | 2 | 3 | 4 | 5 | 6 | 7;
+import type { Glyph } from "../../app/words/formula";
+
+export interface MathSymbol extends Glyph {
   means: string;
 }
 

@@ -67,14 +67,9 @@ function Marked({ scene, hasAccuracy }: { scene: LoadedScene; hasAccuracy: boole
       <Slider
         symbol="h"
         label="height of the point"
-        value={height.value}
-        min={middle - reach}
-        max={middle + reach}
-        step={0.05}
+        of={height}
+        range={[middle - reach, middle + reach, 0.05]}
         says={metres(height.value + scene.originZ, 2)}
-        onInput={(value) => {
-          height.value = value;
-        }}
       />
       {hasAccuracy && <Accuracy scene={scene} x={x} height={height.value} />}
     </>

@@ -2,13 +2,12 @@
 import { h } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { theme } from "../../app/state/theme";
-import type { KindName } from "../../element/kinds";
 import type { RidgelineFigure } from "../../element/RidgelineFigure";
 import { SceneBar } from "./SceneBar";
 import { choice } from "./sceneChoice";
 
 /** The figure of a kind, as a screen's own. */
-export function realFigure(kind: KindName) {
+export function realFigure(kind: string) {
   return function OnScene() {
     const now = choice.value;
     const element = useRef<RidgelineFigure>(null);

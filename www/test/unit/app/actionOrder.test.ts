@@ -57,7 +57,7 @@ async function pageModules() {
     import("../../../src/app/project/projectActions"),
     import("../../../src/app/tour/steps"),
     import("../../../src/app/shell/openingState"),
-    import("../../../src/app/comparison/comparedResults"),
+    import("../../../src/app/results/comparison/comparedResults"),
     import("../../../src/app/state/keptResult"),
     import("../../../src/app/state/project"),
     import("../../../src/app/state/stages"),

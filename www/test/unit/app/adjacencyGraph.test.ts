@@ -1,11 +1,8 @@
 /** What the page says of adjacency graphs: corners of an image, corners in space, and the planes that these propose. */
 import { afterEach, describe, expect, it } from "vitest";
-import { cornerAt, graphOverlay } from "../../../src/app/images/graphOverlay";
-import { presentEntries } from "../../../src/app/parts/Legend";
-import { TABS } from "../../../src/app/state/methods";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
-import { cornerParts } from "../../../src/app/tour/examples";
+import { cornerAt, graphOverlay } from "../../../src/app/view/images/graphOverlay";
 import { rowsOf, shapesOf, siblingsOf, titleOf } from "../../../src/kinds/kinds";
 import type { Related, Row } from "../../../src/kinds/parts/rows";
 import { planesOfCorner } from "../../../src/kinds/planes/corner";
@@ -20,6 +17,9 @@ import {
   type SpaceCorner,
   type SpaceEdge,
 } from "../../../src/shared/records";
+import { cornerParts } from "../../../src/stages/adjacency/tour";
+import { tabsOf } from "../../../src/stages/catalogue";
+import { presentEntries } from "../../../src/stages/PageLegend";
 import { about } from "../kinds/about";
 
 const edgeInImage = (far: [number, number], direction: [number, number], region: number) => ({
@@ -221,8 +221,8 @@ describe("a corner in space", () => {
     show();
     showTab("adjacency");
     expect(presentEntries().map(([colour]) => colour)).toEqual(["matched", "unmatched", "set"]);
-    expect(TABS.adjacency).toContain("adjacency");
-    expect(TABS.adjacency).not.toContain("halfplanes");
+    expect(tabsOf("adjacency")).toContain("adjacency");
+    expect(tabsOf("adjacency")).not.toContain("halfplanes");
     expect(cornerParts({ adjacency: ADJACENCY }, 0)).toEqual({ views: 3, edges: 2, planes: 2 });
     expect(cornerParts({ adjacency: ADJACENCY }, 1)?.planes).toBe(1);
     expect(cornerParts({ adjacency: ADJACENCY }, 5)).toBeNull();

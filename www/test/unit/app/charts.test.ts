@@ -1,9 +1,9 @@
 import { readdirSync, readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
-import { planeNames } from "../../../src/app/figures/ClusterLab";
-import { quantile } from "../../../src/app/figures/LineLabs";
 import { axesOf, closedPathOf, frameOf, histogramOf, pathOf, ticks } from "../../../src/app/parts/charts";
-import { oneScale } from "../../../src/app/space/SectionChart";
+import { oneScale } from "../../../src/app/view/space/SectionChart";
+import { planeNames } from "../../../src/stages/clusters/ClusterLab";
+import { quantile } from "../../../src/stages/lines/LineLab";
 
 describe("ticks", () => {
   it("are round and inside", () => {

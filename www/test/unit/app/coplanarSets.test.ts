@@ -1,11 +1,8 @@
 /** What the page says of sets of coplanar lines, and of what they proposed. */
 import { afterEach, describe, expect, it } from "vitest";
-import { presentEntries } from "../../../src/app/parts/Legend";
 import { setAt, shownSets } from "../../../src/app/selection/coplanarPlan";
-import { TABS } from "../../../src/app/state/methods";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
-import { coplanarSetParts } from "../../../src/app/tour/examples";
 import { linesOf, rowsOf, shapesOf, titleOf } from "../../../src/kinds/kinds";
 import type { Related, Row } from "../../../src/kinds/parts/rows";
 import {
@@ -17,6 +14,9 @@ import {
   isMadeFrom,
   isRejected,
 } from "../../../src/shared/records";
+import { tabsOf } from "../../../src/stages/catalogue";
+import { coplanarSetParts } from "../../../src/stages/coplanar/tour";
+import { presentEntries } from "../../../src/stages/PageLegend";
 import { about } from "../kinds/about";
 
 const square = (x: number, side: number): CoplanarSet["polygon"] => [
@@ -152,8 +152,8 @@ describe("sets of coplanar lines", () => {
     show();
     showTab("coplanar");
     expect(presentEntries().map(([colour]) => colour)).toEqual(["grown", "set", "unmatched"]);
-    expect(TABS.coplanar).toContain("coplanar");
-    expect(TABS.coplanar).not.toContain("halfplanes");
+    expect(tabsOf("coplanar")).toContain("coplanar");
+    expect(tabsOf("coplanar")).not.toContain("halfplanes");
   });
 
   it("are a step of the tour where a side was moved", () => {

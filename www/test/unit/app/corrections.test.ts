@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { doubtfulFacets, nextDoubtful } from "../../../src/app/corrections/doubtful";
+import { doubtfulFacets, nextDoubtful } from "../../../src/app/results/corrections/doubtful";
 import {
   facetAt,
   freeEdges,
@@ -8,7 +8,7 @@ import {
   nearestParallel,
   ridgeOf,
   ringOf,
-} from "../../../src/app/corrections/facetGeometry";
+} from "../../../src/app/results/corrections/facetGeometry";
 import type { Facet, Vec3 } from "../../../src/shared/records";
 
 /** A facet of so many corners whose plane rises northwards by `rise` from `z` at y = 0. */

@@ -1,9 +1,7 @@
 /** What the page says of the planes of dense matching, and of what they proposed. */
 import { afterEach, describe, expect, it } from "vitest";
 import { frameOf } from "../../../src/app/parts/charts";
-import { presentEntries } from "../../../src/app/parts/Legend";
 import { areasOf, equalScales, planeAt, squaresAt } from "../../../src/app/selection/densePlan";
-import { methodOfFacet } from "../../../src/app/space/ModelModes";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
 import { rowsOf, shapesOf, titleOf } from "../../../src/kinds/kinds";
@@ -19,6 +17,8 @@ import {
 } from "../../../src/shared/records";
 import { formatSelection } from "../../../src/shared/selection";
 import { slopeSigma } from "../../../src/shared/surfaceClass";
+import { methodOfFacet } from "../../../src/stages/model/ModelModes";
+import { presentEntries } from "../../../src/stages/PageLegend";
 import { about } from "../kinds/about";
 
 const RING: DensePlane["ring"] = [

@@ -1,12 +1,17 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 
 const correct = vi.hoisted(() => vi.fn(() => Promise.resolve()));
-vi.mock("../../../src/app/corrections/history", () => ({ correct }));
+vi.mock("../../../src/app/results/corrections/history", () => ({ correct }));
 vi.mock("../../../src/app/state/scene", () => ({
   scene: { peek: () => ({ views: [{ name: "a.jpg" }, { name: "b.jpg" }] }) },
 }));
 
-import { drawEdge, edgeStart, isDrawingEdge, takeEdgeEnd } from "../../../src/app/corrections/edgeDrawing";
+import {
+  drawEdge,
+  edgeStart,
+  isDrawingEdge,
+  takeEdgeEnd,
+} from "../../../src/app/results/corrections/edgeDrawing";
 
 describe("an edge drawn in a photograph", () => {
   beforeEach(() => {

@@ -1,5 +1,4 @@
 import { afterEach, describe, expect, it } from "vitest";
-import { presentEntries } from "../../../src/app/parts/Legend";
 import { facetRejectionWords } from "../../../src/app/parts/reasonText";
 import { NO_RESULTS, type Results, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
@@ -7,6 +6,7 @@ import { rowsOf } from "../../../src/kinds/kinds";
 import { evidenceRow } from "../../../src/kinds/parts/evidenceRows";
 import type { Bars, Row } from "../../../src/kinds/parts/rows";
 import type { Evidence, Facet, FacetTrace, LineRecord } from "../../../src/shared/records";
+import { presentEntries } from "../../../src/stages/PageLegend";
 import { about } from "../kinds/about";
 
 const evidence = (prior: number, terms: Record<string, [value: number, nats: number]>): Evidence => ({

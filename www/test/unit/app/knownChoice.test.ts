@@ -1,6 +1,6 @@
 /** Which terrain model and footprints are taken, and what is asked for when a person takes another or none. */
 import { describe, expect, it } from "vitest";
-import { choiceOf, knownFiles } from "../../../src/app/known/knownChoice";
+import { choiceOf, knownFiles } from "../../../src/app/project/known/knownChoice";
 import { NO_OPTIONS } from "../../../src/app/state/project";
 import type { FileReport } from "../../../src/shared/records";
 

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { layoutFor } from "../../../src/app/screen/layout";
+import { layoutFor } from "../../../src/app/view/screen/layout";
 
 it("a small screen, zoom and large type each take the layout that has room", () => {
   expect([360, 768, 1024, 1440, 1920].map((width) => layoutFor(width, 1))).toEqual([

@@ -1,5 +1,11 @@
 import { describe, expect, it } from "vitest";
-import { isMeasurable, marked, markIn, NO_MARKS, nextEnd } from "../../../src/app/orienting/lengthMarks";
+import {
+  isMeasurable,
+  marked,
+  markIn,
+  NO_MARKS,
+  nextEnd,
+} from "../../../src/app/project/orienting/lengthMarks";
 
 describe("marks of a length", () => {
   const at = (file: string, x: number) => ({ file, x, y: 1 });

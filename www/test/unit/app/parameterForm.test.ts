@@ -1,5 +1,5 @@
+import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
-import { firstStageOf, stagesOf } from "../../../src/app/session/stageCatalogue";
 import {
   changedParams,
   type ParamField,
@@ -9,7 +9,10 @@ import {
   wantedFields,
   withParam,
 } from "../../../src/app/settings/parameterForm";
+import * as core from "../../../src/pkg/ridgeline.js";
 import type { ParamTree } from "../../../src/shared/paramTree";
+import { METHODS, STAGES } from "../../../src/shared/stages";
+import { firstStageOf, stagesOf } from "../../../src/stages/catalogue";
 
 const DEFAULTS = {
   segments: { min_length_px: 15, area_m2: 2, closed: true },
@@ -107,6 +110,36 @@ describe("parseField", () => {
   it("takes JSON for lists and rejects what is none", () => {
     expect(parseField(field("sweep", "steps"), "[3]")).toEqual({ value: [3] });
     expect(parseField(field("sweep", "steps"), "[3")).toHaveProperty("error");
+  });
+});
+
+describe("the form of a method", () => {
+  core.initSync({ module: readFileSync(new URL("../../../src/pkg/ridgeline_bg.wasm", import.meta.url)) });
+  const defaults = core.Session.defaultParams() as unknown as ParamTree;
+  /** The paths of all single values below one, lists among them. */
+  const below = (path: string, value: unknown): string[] =>
+    typeof value === "object" && value !== null && !Array.isArray(value)
+      ? Object.entries(value).flatMap(([key, inner]) => below(`${path}.${key}`, inner))
+      : [path];
+  const at = (path: string) =>
+    path.split(".").reduce<unknown>((group, key) => (group as ParamTree)[key], defaults);
+
+  it.each(METHODS)("shows every parameter that a stage of %s reads, and no other", (method) => {
+    const values = { ...defaults, method: method as unknown as ParamTree[string] };
+    const shown = paramSections(defaults, values).flatMap(({ path, fields }) =>
+      fields.map(({ key }) => `${path}.${key}`),
+    );
+    const read = STAGES.filter(({ methods }) => (methods as readonly string[]).includes(method))
+      .flatMap(({ reads }) => reads as readonly string[])
+      // Corrections are no parameters of the form: they have a list of their own.
+      .filter((path) => path !== "corrections")
+      .flatMap((path) => below(path, at(path)));
+    expect([...shown].sort()).toEqual([...new Set(read)].sort());
+  });
+
+  it("has a point cloud's in the default method", () => {
+    const titles = paramSections(defaults, defaults).map(({ title }) => title);
+    expect(titles).toContain("Point cloud");
   });
 });
 

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { planOf, readFacts, scaleBarM } from "../../../src/app/photographs/photographFacts";
+import { planOf, readFacts, scaleBarM } from "../../../src/app/project/photographs/photographFacts";
 
 it("says where, when and with what a photograph was taken", async () => {
   const facts = await readFacts({ path: "dji/a.jpg", blob: photograph(47.25, -8.5) });

@@ -1,6 +1,12 @@
 import { describe, expect, it } from "vitest";
-import { boxOf, coverOf, frameOf, regionBetween, spacingOf } from "../../../src/app/flight/planGeometry";
 import { minutesText } from "../../../src/app/parts/numberText";
+import {
+  boxOf,
+  coverOf,
+  frameOf,
+  regionBetween,
+  spacingOf,
+} from "../../../src/app/project/flight/planGeometry";
 
 describe("the plan of a flight", () => {
   const frame = frameOf([100, -50, 300, 50]);

@@ -1,8 +1,7 @@
 /** What figures say of themselves outside of the page: their state in links, their papers, their numbers. */
 import { describe, expect, it } from "vitest";
-import { TABS } from "../../../src/app/state/methods";
-import { citationOf } from "../../../src/app/takeAlong/citation";
-import { csvOf, ROWS } from "../../../src/app/takeAlong/tables";
+import { citationOf } from "../../../src/app/results/takeAlong/citation";
+import { csvOf } from "../../../src/app/results/takeAlong/rows";
 import {
   addressOf,
   FIRST_STATE,
@@ -12,7 +11,10 @@ import {
   stateInAddress,
 } from "../../../src/element/figureState";
 import { fetchScene, sceneUrl } from "../../../src/element/sceneFiles";
-import { type Figure, NO_DETAIL, NO_RESULTS } from "../../../src/shared/figure";
+import { tabsOf } from "../../../src/stages/catalogue";
+import { type Figure, NO_DETAIL } from "../../../src/stages/figure";
+import { FIGURES } from "../../../src/stages/figures";
+import { NO_RESULTS } from "../../../src/stages/list";
 
 const PAGE = "https://school.example/lesson/3.html?class=a#top";
 
@@ -77,8 +79,8 @@ describe("the address of a scene", () => {
 });
 
 describe("whom to cite", () => {
-  it.each(TABS.combined)("is said of %s with its section", (tab) => {
-    const cited = citationOf(tab);
+  it.each(tabsOf("combined"))("is said of %s with its section", (tab) => {
+    const cited = citationOf(FIGURES[tab]);
     const entries = [...cited.matchAll(/^@inproceedings\{(\w+),$/gm)].map(([, key]) => key);
     expect(entries.length).toBeGreaterThan(0);
     expect(new Set(entries).size).toBe(entries.length);
@@ -88,7 +90,9 @@ describe("whom to cite", () => {
   });
 
   it("names both papers where both have it", () => {
-    expect(citationOf("images")).toMatch(/Baillard1999[\s\S]*Section 2, figure 1[\s\S]*Wiman1996[\s\S]*3\.2/);
+    expect(citationOf(FIGURES.images)).toMatch(
+      /Baillard1999[\s\S]*Section 2, figure 1[\s\S]*Wiman1996[\s\S]*3\.2/,
+    );
   });
 });
 
@@ -113,7 +117,7 @@ describe("the numbers behind a figure", () => {
       plane: 0,
       inText: true,
     } as unknown as Figure;
-    for (const rows of Object.values(ROWS)) {
+    for (const { rows } of Object.values(FIGURES)) {
       expect(rows(empty)).toEqual([]);
     }
   });
@@ -128,7 +132,7 @@ describe("the numbers behind a figure", () => {
       scene: { views: [{ name: "a.jpg" }, { name: "b.jpg" }] },
       detail: { ...NO_DETAIL, side: { curve } },
     } as unknown as Figure;
-    const [, second] = ROWS.halfplanes(figure);
+    const [, second] = FIGURES.halfplanes.rows(figure);
     expect(second).toMatchObject({ sim: 0.8, "sim_b.jpg": 0.9 });
     expect(second?.["theta_deg"]).toBeCloseTo(30, 9);
   });

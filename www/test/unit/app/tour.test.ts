@@ -2,18 +2,13 @@
 import { describe, expect, it } from "vitest";
 import { counted } from "../../../src/app/parts/counted";
 import type { Results } from "../../../src/app/state/results";
-import {
-  agreesNowhere,
-  densePlaneParts,
-  facetOfSegment,
-  fallOf,
-  groupParts,
-  growthOf,
-  roofEnds,
-  roofSegments,
-  slopedHalfPlanes,
-} from "../../../src/app/tour/examples";
 import type { SideTrace } from "../../../src/shared/records";
+import { densePlaneParts } from "../../../src/stages/dense/tour";
+import { groupParts } from "../../../src/stages/groups/tour";
+import { agreesNowhere, fallOf, roofEnds, slopedHalfPlanes } from "../../../src/stages/halfplanes/tour";
+import { growthOf } from "../../../src/stages/lines/tour";
+import { roofSegments } from "../../../src/stages/matches/tour";
+import { facetOfSegment } from "../../../src/stages/segments/tour";
 
 const DEGREE = Math.PI / 180;
 
@@ -130,5 +125,25 @@ describe("counted", () => {
     expect(counted(0, "matches")).toBe("0 matches");
     expect(counted(1, "matches")).toBe("1 match");
     expect(counted(1, "patches")).toBe("1 patch");
+  });
+});
+
+describe("the tour", () => {
+  it("goes through B99, its other ways to planes, and W96 at the end", async () => {
+    const { STEPS } = await import("../../../src/app/tour/steps");
+    expect(STEPS.map(({ method, tab }) => `${method} ${tab}`)).toEqual([
+      "lines segments",
+      "lines matches",
+      "lines matches",
+      "lines lines",
+      "lines halfplanes",
+      "lines halfplanes",
+      "lines dense",
+      "lines groups",
+      "lines model",
+      "coplanar coplanar",
+      "adjacency adjacency",
+      "rectangles clusters",
+    ]);
   });
 });

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { unmodelledPlanes } from "../../../src/app/space/unmodelledPlanes";
+import { unmodelledPlanes } from "../../../src/app/view/space/unmodelledPlanes";
 import type { Facet, RejectedFacet, Vec3 } from "../../../src/shared/records";
 
 function square(x: number, y: number, side: number): Vec3[] {

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { fitImage, nearestSegment, pan, pinch, toImage, zoomAt } from "../../../src/app/images/viewport";
+import { fitImage, nearestSegment, pan, pinch, toImage, zoomAt } from "../../../src/app/view/images/viewport";
 
 describe("viewport", () => {
   it("shows the whole image in the middle", () => {

@@ -9,7 +9,8 @@ describe("why a call failed", () => {
   it("is what the core said last, with its place, where it stopped", () => {
     expect(failureOf(trap("unreachable"), PANIC)).toEqual({
       kind: "crash",
-      message: "index out of bounds: the len is 9 but the index is 9 (src/planes/hypotheses/hypothesis.rs, line 41)",
+      message:
+        "index out of bounds: the len is 9 but the index is 9 (src/planes/hypotheses/hypothesis.rs, line 41)",
       orientationCheck: null,
     });
   });

@@ -1,7 +1,7 @@
 /** Photographs and pairs are dealt to workers, and what one has read is given to all. */
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { drawnPlan } from "../../../src/app/orienting/overlapGeometry";
-import { nearestMatch } from "../../../src/app/orienting/pairGeometry";
+import { drawnPlan } from "../../../src/app/project/orienting/overlapGeometry";
+import { nearestMatch } from "../../../src/app/project/orienting/pairGeometry";
 import { OrientationRun, type OrientEvents } from "../../../src/core/orientation";
 import type { OrientReply, OrientRequest } from "../../../src/shared/orientation";
 

@@ -2,7 +2,7 @@
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { exercisesPage } from "../../../scripts/exercisesPage";
-import { plain } from "../../../src/app/glossary/linkedText";
+import { plain } from "../../../src/app/words/linkedText";
 import { EXERCISES, exerciseNamed, mistakesOf } from "../../../src/exercise/exercises";
 import { LESSONS } from "../../../src/exercise/judging/about";
 import { drawOf } from "../../../src/exercise/judging/judgeNumber";

@@ -1,17 +1,16 @@
 /** The demo scene as the figures have it: the page's own core, in Node. */
 import { readFileSync } from "node:fs";
 import { signal } from "@preact/signals";
-import { stagesOf } from "../../../src/app/session/stageCatalogue";
-import { fetchResults } from "../../../src/app/session/stageResults";
 import type { FigureState } from "../../../src/element/figureState";
 import { FigureStore } from "../../../src/element/figureStore";
-import { KINDS, type KindName } from "../../../src/element/kinds";
+import { type Kind, kindOf } from "../../../src/element/kinds";
 import type { SceneState, SharedScene } from "../../../src/element/sharedScene";
 import type { Asked } from "../../../src/exercise/figures/judgeFigure";
 import * as core from "../../../src/pkg/ridgeline.js";
-import type { Figure } from "../../../src/shared/figure";
-import { NO_RESULTS } from "../../../src/shared/figure";
 import type { Method, StageName } from "../../../src/shared/stages";
+import { stagesOf } from "../../../src/stages/catalogue";
+import type { Figure } from "../../../src/stages/figure";
+import { fetchResults, NO_RESULTS } from "../../../src/stages/list";
 
 const WWW = new URL("../../../", import.meta.url);
 
@@ -57,8 +56,8 @@ export interface DemoFigure extends Asked {
 }
 
 /** A figure of the demo scene, drawn by nobody. */
-export async function demoFigure(kind: KindName): Promise<DemoFigure> {
-  const { method, stage, begin } = KINDS[kind];
+export async function demoFigure(kind: string): Promise<DemoFigure> {
+  const { method, stage, begin } = kindOf(kind) as Kind;
   const last = LAST[method] ?? stage;
   const known = sessions.get(method) ?? sessionOf(method, last);
   sessions.set(method, known);

@@ -8,7 +8,7 @@ import { facesUnder, outcomeOfRegion, ridgeIn } from "../../../src/exercise/figu
 import { outcomeOf, pairsOf, sigmaAcross } from "../../../src/exercise/figures/pairs";
 import { edgesOfView } from "../../../src/exercise/figures/segments";
 import { EDGES, edgeAlong, FACES, faceBeside, imageIn, lineOf } from "../../../src/exercise/figures/truth";
-import type { Figure } from "../../../src/shared/figure";
+import type { Figure } from "../../../src/stages/figure";
 import { type DemoFigure, demoFigure } from "./demoScene";
 
 const LONG_MS = 60_000;

@@ -1,6 +1,6 @@
 /** The answers of the numbers, found another way from the words of the task alone: by projecting points, cutting planes, adding up codes. */
 import { describe, expect, it } from "vitest";
-import { plain } from "../../../src/app/glossary/linkedText";
+import { plain } from "../../../src/app/words/linkedText";
 import { drawOf } from "../../../src/exercise/judging/judgeNumber";
 import { NUMBERS } from "../../../src/exercise/numbers";
 

@@ -2,11 +2,11 @@
 import { readdirSync, readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { glossaryPage } from "../../../scripts/glossaryPage";
-import { partsOf, plain } from "../../../src/app/glossary/linkedText";
-import { TERM_IDS, TERMS, termNamed } from "../../../src/app/glossary/terms";
+import { partsOf, plain } from "../../../src/app/words/linkedText";
+import { TERM_IDS, TERMS, termNamed } from "../../../src/app/words/terms";
 
 const SOURCE = new URL("../../../src/", import.meta.url);
-const OWN = /^app\/glossary\//;
+const OWN = /^app\/words\//;
 
 /** The ids that texts name, in marks and in components. */
 function named(): Set<string> {

@@ -1,5 +1,6 @@
 import type { About } from "../../../src/kinds/parts/kind";
-import { NO_DETAIL, NO_RESULTS, type Results } from "../../../src/shared/figure";
+import { NO_DETAIL } from "../../../src/stages/figure";
+import { NO_RESULTS, type Results } from "../../../src/stages/list";
 
 /** A figure of these results. */
 export function about(found: Partial<Results>): About {

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
-import { TABS } from "../../../src/app/state/methods";
 import { KINDS } from "../../../src/kinds/kinds";
 import { formatSelection, KIND_NAMES, parseSelection, type Selection } from "../../../src/shared/selection";
+import { tabsOf } from "../../../src/stages/catalogue";
 
 /** One of each kind, with the fields that its text names. */
 const ONES: readonly Selection[] = [
@@ -96,6 +96,6 @@ describe("the kinds of things", () => {
 
   it("are gone through in the tabs, one kind in each", () => {
     const tabs = Object.values(KINDS).flatMap((kind) => kind.tabs ?? []);
-    expect([...tabs].sort()).toEqual([...TABS.combined].sort());
+    expect([...tabs].sort()).toEqual([...tabsOf("combined")].sort());
   });
 });

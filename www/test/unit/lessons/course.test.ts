@@ -1,6 +1,6 @@
 /** The lessons as they are written: complete, every symbol with a meaning, every formula readable. */
 import { beforeAll, describe, expect, it, vi } from "vitest";
-import { parseFormula, piecesOf, symbolsIn, symbolsOfText } from "../../../src/lessons/parts/formula";
+import { lessonFormula, piecesOf, symbolsIn, symbolsOfText } from "../../../src/lessons/parts/formula";
 import { type Lesson, wordsOf } from "../../../src/lessons/parts/lesson";
 import { SYMBOLS } from "../../../src/lessons/parts/symbols";
 
@@ -29,17 +29,17 @@ beforeAll(async () => {
 
 describe("formulas", () => {
   it("are read with scripts, groups, fractions and matrices", () => {
-    const node = parseFormula("x2 ^T F x = 0");
+    const node = lessonFormula("x2 ^T F x = 0");
     expect(node.children.map(({ tag }) => tag)).toEqual(["msup", "mi", "mi", "mo", "mn"]);
     expect(symbolsIn(node).map(({ glyph }) => glyph)).toEqual(["x′", "F", "x"]);
-    expect(parseFormula("frac { f B } { Z ^2 }").tag).toBe("mfrac");
-    expect(JSON.stringify(parseFormula("matrix { 1 -2 ; 3 { u + v } }"))).toContain("−2");
-    expect(parseFormula("sum _ i d _ i ^2").children[0]?.tag).toBe("munder");
+    expect(lessonFormula("frac { f B } { Z ^2 }").tag).toBe("mfrac");
+    expect(JSON.stringify(lessonFormula("matrix { 1 -2 ; 3 { u + v } }"))).toContain("−2");
+    expect(lessonFormula("sum _ i d _ i ^2").children[0]?.tag).toBe("munder");
   });
 
   it("are rejected where a word has no meaning or a group no end", () => {
     for (const wrong of ["x ~ Q X", "frac { f", "x }", "x ^"]) {
-      expect(() => parseFormula(wrong), wrong).toThrow();
+      expect(() => lessonFormula(wrong), wrong).toThrow();
     }
   });
 

@@ -3,7 +3,7 @@ import type { Intersection } from "three";
 import { describe, expect, it } from "vitest";
 import { edgesOfCorner, isVerifiedPlane } from "../../../src/shared/proposed";
 import type { AdjacencyGraphs } from "../../../src/shared/records";
-import { buildAdjacency } from "../../../src/viewer/layers/adjacency";
+import { buildAdjacency } from "../../../src/stages/adjacency/adjacencyLayer";
 
 const plane = (corner: number, insideNats: number) => ({
   regions: [[corner, 0]],

@@ -3,7 +3,7 @@ import type { Intersection } from "three";
 import { describe, expect, it } from "vitest";
 import { isVerifiedSet } from "../../../src/shared/proposed";
 import type { CoplanarSets } from "../../../src/shared/records";
-import { buildCoplanar } from "../../../src/viewer/layers/coplanar";
+import { buildCoplanar } from "../../../src/stages/coplanar/coplanarLayer";
 
 const triangle = (x: number) => [
   [x, 0, 5],

@@ -3,7 +3,7 @@ import type { BufferGeometry, Intersection, Mesh, MeshBasicMaterial } from "thre
 import { describe, expect, it } from "vitest";
 import type { DensePlane, DensePlanes } from "../../../src/shared/records";
 import { heightAt, likeliestClass, planesOfPatches } from "../../../src/shared/surfaceClass";
-import { buildDense } from "../../../src/viewer/layers/dense";
+import { buildDense } from "../../../src/stages/dense/denseLayer";
 
 type Squares = Mesh<BufferGeometry, MeshBasicMaterial>;
 

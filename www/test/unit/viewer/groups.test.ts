@@ -3,7 +3,7 @@ import type { Intersection } from "three";
 import type { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { expect, it } from "vitest";
 import type { Facet, GroupingTrace } from "../../../src/shared/records";
-import { buildGroups } from "../../../src/viewer/layers/groups";
+import { buildGroups } from "../../../src/stages/groups/groupsLayer";
 import { isOfRoof, middleOf } from "../../../src/viewer/scene/facetPlan";
 
 const PLANE = { normal: [0, 0, 1] as [number, number, number], d: -5 };

@@ -3,7 +3,7 @@ import type { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { expect, it } from "vitest";
 import { PALETTE } from "../../../src/shared/palette";
 import type { LineOrigin, LineRecord } from "../../../src/shared/records";
-import { buildLines, colourOf, ORIGIN_COLOURS, opacityOfLine } from "../../../src/viewer/layers/lines";
+import { buildLines, colourOf, ORIGIN_COLOURS, opacityOfLine } from "../../../src/stages/lines/linesLayer";
 import { sidesOf } from "../../../src/viewer/scene/strokes";
 
 const record = (origin: LineOrigin, views: number, probability = 1): LineRecord => ({

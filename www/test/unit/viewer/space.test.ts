@@ -2,7 +2,7 @@ import { type Intersection, type LineSegments, Vector3, Vector4 } from "three";
 import { describe, expect, it } from "vitest";
 import { project } from "../../../src/kinds/parts/marks";
 import type { Vec3, ViewInfo } from "../../../src/shared/records";
-import { buildFans, buildTurning, fanCorners } from "../../../src/viewer/layers/fans";
+import { buildFans, buildTurning, fanCorners } from "../../../src/stages/halfplanes/fansLayer";
 import { yUp } from "../../../src/viewer/scene/frame";
 import { clipFromViewer, fitShares } from "../../../src/viewer/scene/photoProjection";
 import { measure } from "../../../src/viewer/tools/measure";

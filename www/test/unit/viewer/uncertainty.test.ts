@@ -6,7 +6,7 @@ import {
   type Covariance,
   ellipse,
   enlargement,
-} from "../../../src/viewer/layers/uncertainty";
+} from "../../../src/stages/lines/uncertaintyLayer";
 
 const U = new Vector3(1, 0, 0);
 const V = new Vector3(0, 0, 1);

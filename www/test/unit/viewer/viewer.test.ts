@@ -1,9 +1,9 @@
 import { PerspectiveCamera, Sphere, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import type { HalfPlane } from "../../../src/shared/records";
+import { fanCorners } from "../../../src/stages/halfplanes/fansLayer";
 import { groundCorners } from "../../../src/viewer/layers/cameras";
 import { normalTint } from "../../../src/viewer/layers/facets";
-import { fanCorners } from "../../../src/viewer/layers/fans";
 import { endsOfLines, isNearlySame, standFor } from "../../../src/viewer/scene/bounds";
 import { yUp, zUpGroup } from "../../../src/viewer/scene/frame";
 

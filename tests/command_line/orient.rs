@@ -1,0 +1,198 @@
+//! `ridgeline orient` as a user meets it.
+
+use std::ffi::OsStr;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use crate::common::{contents_of, names_in};
+use nalgebra::{Point3, Vector3};
+use ridgeline::Scene;
+
+/// A folder of photographs without orientation, and one for the results.
+struct Photographs {
+    folder: tempfile::TempDir,
+    scene: Scene,
+}
+
+impl Photographs {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let (scene, _) = ridgeline::orienting::synthetic::drone_scene(240);
+        for (path, bytes) in ridgeline::orienting::synthetic::to_files(&scene) {
+            if path.ends_with(".png") {
+                let path = folder.path().join("photos").join(path);
+                fs::create_dir_all(path.parent().unwrap()).unwrap();
+                fs::write(path, bytes).unwrap();
+            }
+        }
+        Self { folder, scene }
+    }
+
+    fn photos(&self) -> PathBuf {
+        self.folder.path().join("photos")
+    }
+
+    fn out(&self) -> PathBuf {
+        self.folder.path().join("oriented")
+    }
+
+    fn orient(&self, more: &[&str]) -> Output {
+        let (photos, out) = (self.photos(), self.out());
+        let fixed = [
+            "orient".as_ref(),
+            photos.as_os_str(),
+            "--out".as_ref(),
+            out.as_os_str(),
+        ];
+        run(fixed.into_iter().chain(more.iter().map(OsStr::new)))
+    }
+
+    fn check(&self) -> Output {
+        let (photos, out) = (self.photos(), self.out());
+        run([
+            "check".as_ref(),
+            photos.as_os_str(),
+            "--orientation".as_ref(),
+            out.as_os_str(),
+        ])
+    }
+}
+
+fn run<'a>(arguments: impl IntoIterator<Item = &'a OsStr>) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ridgeline"));
+    command.args(arguments).output().unwrap()
+}
+
+#[test]
+fn photographs_alone_are_oriented_into_a_folder_that_is_read_on() {
+    let photographs = Photographs::new();
+    let output = photographs.orient(&["--features", "800", "--focal", "216"]);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        printed.starts_with("9 of 9 photographs oriented"),
+        "{printed}"
+    );
+    let expected = [
+        "cameras.txt",
+        "images.txt",
+        "orientation.json",
+        "orientation.log",
+        "points3D.txt",
+    ];
+    assert_eq!(names_in(&photographs.out()), expected);
+    let first = contents_of(&photographs.out());
+    assert!(
+        photographs
+            .orient(&["--features", "800", "--focal", "216", "--threads", "1"])
+            .status
+            .success()
+    );
+    assert_eq!(contents_of(&photographs.out()), first);
+    let output = photographs.check();
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        printed.contains("images and orientation agree"),
+        "{printed}"
+    );
+    // Two photographs are none.
+    for i in 2..9 {
+        fs::remove_file(photographs.photos().join(format!("images/d{i}.png"))).unwrap();
+    }
+    let output = photographs.orient(&[]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(
+        message.contains("2 photographs; give three or more"),
+        "{message}"
+    );
+}
+
+/// Where the map puts the zero of the scene.
+const ON_MAP: Vector3<f64> = Vector3::new(432_150.0, 5_412_340.0, 0.0);
+
+#[test]
+fn control_points_give_the_map_and_a_wrong_one_is_named() {
+    let photographs = Photographs::new();
+    let places = [
+        ("north", [-8.0, 7.0, 0.0]),
+        ("south", [9.0, -7.0, 0.0]),
+        ("east", [8.0, 9.0, 0.0]),
+        ("west", [-9.0, -8.0, 0.0]),
+        ("middle", [-3.0, -9.0, 0.0]),
+        ("pole", [0.0, 9.0, 3.0]),
+    ];
+    let mut text = "EPSG:25832\n".to_owned();
+    for (name, [x, y, z]) in places {
+        for (i, view) in photographs.scene.views.iter().enumerate() {
+            let seen = view.camera.project(&Point3::new(x, y, z)).unwrap();
+            // The middle one was read two metres too far east.
+            let wrong = if name == "middle" { 2.0 } else { 0.0 };
+            let (e, n) = (x + ON_MAP.x + wrong, y + ON_MAP.y);
+            writeln!(text, "{e} {n} {z} {} {} d{i}.png {name}", seen.x, seen.y).unwrap();
+        }
+    }
+    let list = photographs.folder.path().join("points.txt");
+    fs::write(&list, &text).unwrap();
+    let list = list.to_str().unwrap();
+    let options = ["--features", "800", "--focal", "216"];
+    let output = photographs.orient(&[&options[..], &["--gcp", list]].concat());
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    for words in [
+        "EPSG:25832, x from 432100 and y from 5412300 m: 5 of 6 ground control points",
+        "ground control point middle is -1.9",
+        "from where the others put it: check its coordinates and marks",
+        "--epsg 25832",
+    ] {
+        assert!(printed.contains(words), "{words}: {printed}");
+    }
+    let warnings = printed.lines().filter(|l| l.starts_with("warning:"));
+    assert_eq!(warnings.count(), 1, "{printed}");
+    // Beside the photographs, under the name that OpenDroneMap gives it, it says the same, and is
+    // no orientation by itself.
+    let with_option = contents_of(&photographs.out());
+    fs::write(photographs.photos().join("gcp_list.txt"), &text).unwrap();
+    assert!(photographs.orient(&options).status.success());
+    assert_eq!(contents_of(&photographs.out()), with_option);
+    let output = photographs.check();
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        printed.contains("images and orientation agree"),
+        "{printed}"
+    );
+}
+
+#[test]
+fn a_list_that_cannot_be_read_is_named_with_its_line() {
+    let photographs = Photographs::new();
+    let list = photographs.folder.path().join("points.txt");
+    fs::write(&list, "EPSG:25832\n432150 5412340 0 12 left d0.png\n").unwrap();
+    let refused = |path: &str| {
+        let output = photographs.orient(&["--gcp", path]);
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let message = refused(list.to_str().unwrap());
+    assert!(
+        message.contains("gcp_list.txt, line 2") && message.contains("geo_x geo_y"),
+        "{message}"
+    );
+    let message = refused("nowhere.txt");
+    assert!(message.contains("nowhere.txt: cannot be read"), "{message}");
+}

@@ -1,0 +1,141 @@
+/** What is shown while nothing is open: a finished model, the photographs that it came from, and where to put one's own. */
+import { counted } from "../../parts/counted";
+import "./entrance.css";
+import { signal, useSignalEffect } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { THEME_COLOURS } from "../../../shared/palette";
+import { createTurntable, type PhotographicGround, type Turntable } from "../../../viewer/turntable";
+import { theme } from "../../state/theme";
+import { startTour } from "../../tour/steps";
+import { DropZone } from "../Project";
+import { openDemo } from "../projectActions";
+
+/** What the build wrote beside the model. */
+interface EntranceScene {
+  photographs: string[];
+  ground: PhotographicGround;
+}
+
+const DEMO = "./demo/";
+const FOLDER = "./entrance/";
+
+export function Entrance() {
+  return (
+    <div class="entrance" data-testid="entrance">
+      <section class="showpiece" aria-label="An example">
+        <Model />
+        <Photographs />
+      </section>
+      <section class="invitation" aria-label="Begin">
+        <h2>From aerial photographs to textured roof models</h2>
+        <p>
+          Three or more overlapping photographs, whose positions and directions are known, become buildings in
+          3D: computed here, in the browser.
+        </p>
+        <p class="row">
+          <button type="button" class="primary" onClick={startTour}>
+            How?
+          </button>
+          <span class="muted">A tour in twelve steps, on the example.</span>
+        </p>
+        <p>
+          <a href="./lessons.html">Ten lessons</a>{" "}
+          <span class="muted">
+            of multi-view geometry, with <a href="./exercises.html">exercises</a> and a{" "}
+            <a href="./exercises.html#glossary">glossary</a>.
+          </span>
+        </p>
+        <DropZone />
+      </section>
+    </div>
+  );
+}
+
+/** The scene that the build wrote; null until it is here, or where the site has none. */
+const shown = signal<EntranceScene | null>(null);
+const table = signal<Turntable | null>(null);
+
+function Model() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const isDrawn = table.value !== null;
+  useEffect(() => {
+    const element = canvas.current;
+    let isGone = false;
+    if (element !== null) {
+      void showModel(element).then((made) => {
+        if (isGone) {
+          made?.dispose();
+        } else {
+          table.value = made;
+        }
+      });
+    }
+    return () => {
+      isGone = true;
+      table.value?.dispose();
+      table.value = null;
+    };
+  }, []);
+  useSignalEffect(() => {
+    table.value?.setBackground(THEME_COLOURS[theme.value].background);
+  });
+  return (
+    <div class={`turntable ${isDrawn ? "drawn" : ""}`}>
+      {!isDrawn && <img src={`${DEMO}images/s2_02.jpg`} alt="" />}
+      <canvas
+        ref={canvas}
+        role="img"
+        data-testid="turntable"
+        aria-label="Textured 3D model of five detached houses on a photograph of their ground; drag to turn it"
+      />
+    </div>
+  );
+}
+
+/** Null where there is no WebGL or no model: the photograph stays in its place. */
+async function showModel(canvas: HTMLCanvasElement): Promise<Turntable | null> {
+  try {
+    const [scene, model] = await Promise.all([
+      fetched("scene.json").then((response) => response.json() as Promise<EntranceScene>),
+      fetched("model.glb").then((response) => response.arrayBuffer()),
+    ]);
+    shown.value = scene;
+    const isStill = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+    return await createTurntable(canvas, model, scene.ground, `${DEMO}${scene.ground.photograph}`, !isStill);
+  } catch {
+    return null;
+  }
+}
+
+async function fetched(name: string): Promise<Response> {
+  const response = await fetch(`${FOLDER}${name}`);
+  if (!response.ok) {
+    throw new Error(`${name}: ${response.status}`);
+  }
+  return response;
+}
+
+function Photographs() {
+  const names = shown.value?.photographs ?? [];
+  return (
+    <div class="sources">
+      <p>
+        Five houses, computed from {counted(names.length === 0 ? 6 : names.length, "photographs")}.{" "}
+        <button type="button" onClick={() => void openDemo()}>
+          Demo scene
+        </button>
+      </p>
+      <ul>
+        {names.map((path) => (
+          <li key={path}>
+            <img src={`${DEMO}${path}`} alt={`Aerial photograph ${baseName(path)}`} loading="lazy" />
+          </li>
+        ))}
+      </ul>
+    </div>
+  );
+}
+
+function baseName(path: string): string {
+  return path.slice(path.lastIndexOf("/") + 1);
+}

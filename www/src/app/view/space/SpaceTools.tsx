@@ -1,0 +1,191 @@
+/** The tools of the 3D view: fit, look down, look through a view's camera, measure, cut, keep a picture. */
+import { signal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import type { Measured } from "../../../viewer/tools/measure";
+import type { Section } from "../../../viewer/tools/section";
+import type { Viewer } from "../../../viewer/viewer";
+import { saveFile } from "../../parts/saveFile";
+import { isCorrecting, takePoint } from "../../results/corrections/drawn";
+import { tab } from "../../state/viewState";
+import { FlyTo, lookThrough, Photograph, throughView } from "./Photograph";
+import { SectionChart } from "./SectionChart";
+
+/** What clicks in the space view do besides picking. */
+type Tool = "measure" | "section" | "draw";
+
+const tool = signal<Tool | null>(null);
+const measured = signal<Measured | null>(null);
+const section = signal<Section | null>(null);
+
+export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: () => void }) {
+  const leave = () => lookThrough(viewer, null);
+  const choose = (next: Tool) => {
+    const isOn = tool.value === next;
+    aim.value = null;
+    measured.value = null;
+    section.value = null;
+    tool.value = isOn ? null : next;
+    viewer?.measure(isOn || next !== "measure" ? null : (found) => (measured.value = found));
+    viewer?.section(isOn || next !== "section" ? null : (found) => (section.value = found));
+    if (!isOn && next === "draw") {
+      viewer?.draw3d(takePoint);
+    }
+  };
+  const keepPicture = async () => {
+    const blob = await viewer?.screenshot();
+    if (blob != null) {
+      saveFile(`${tab.value}.png`, blob);
+    }
+  };
+  return (
+    <>
+      {throughView.value !== null && <Photograph view={throughView.value} />}
+      <div class="space-tools">
+        <button
+          type="button"
+          onClick={() => {
+            leave();
+            onFit();
+          }}
+        >
+          Fit
+        </button>
+        <button
+          type="button"
+          onClick={() => {
+            leave();
+            viewer?.lookDown();
+          }}
+        >
+          Top
+        </button>
+        <button type="button" aria-pressed={tool.value === "measure"} onClick={() => choose("measure")}>
+          Measure
+        </button>
+        <button type="button" aria-pressed={tool.value === "section"} onClick={() => choose("section")}>
+          Section
+        </button>
+        {isCorrecting.value && (
+          <button type="button" aria-pressed={tool.value === "draw"} onClick={() => choose("draw")}>
+            Draw
+          </button>
+        )}
+        <button type="button" onClick={() => void keepPicture()}>
+          Picture
+        </button>
+        <FlyTo viewer={viewer} />
+      </div>
+      {tool.value !== null && <Crosshair viewer={viewer} onLeave={() => choose(tool.value ?? "measure")} />}
+      {tool.value === "measure" && <Reading measured={measured.value} />}
+      {tool.value === "draw" && (
+        <p class="reading" role="status">
+          Click points of the model; dots can be dragged.
+        </p>
+      )}
+      {tool.value === "section" && <Profile viewer={viewer} />}
+    </>
+  );
+}
+
+/** Where the crosshair is, CSS pixels of the canvas; null: in its middle. */
+const aim = signal<{ x: number; y: number } | null>(null);
+
+const STEP_PX = 12;
+const STEPS: Record<string, readonly [number, number]> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
+
+/** Points for the tools without a pointer: arrows move the crosshair (Shift: finely), Enter takes the point below it. */
+function Crosshair({ viewer, onLeave }: { viewer: Viewer | null; onLeave: () => void }) {
+  const button = useRef<HTMLButtonElement>(null);
+  const { clientWidth = 0, clientHeight = 0 } = button.current?.parentElement ?? {};
+  const place = aim.value ?? { x: clientWidth / 2, y: clientHeight / 2 };
+  const onKeyDown = (event: KeyboardEvent) => {
+    const step = STEPS[event.key];
+    if (step !== undefined) {
+      event.preventDefault();
+      const size = event.shiftKey ? 1 : STEP_PX;
+      aim.value = {
+        x: Math.min(clientWidth - 1, Math.max(0, place.x + size * step[0])),
+        y: Math.min(clientHeight - 1, Math.max(0, place.y + size * step[1])),
+      };
+    } else if (event.key === "Escape") {
+      onLeave();
+    }
+  };
+  // Its place is known once it is laid out.
+  useEffect(() => {
+    aim.value ??= { x: (button.current?.parentElement?.clientWidth ?? 0) / 2, y: middleOf(button.current) };
+  }, []);
+  return (
+    <button
+      ref={button}
+      type="button"
+      class="crosshair"
+      aria-label="Crosshair: arrow keys move it, Shift finely, Enter takes the point below it, Escape ends the tool"
+      style={{ left: `${place.x}px`, top: `${place.y}px` }}
+      onKeyDown={onKeyDown}
+      onClick={() => viewer?.press(place)}
+    />
+  );
+}
+
+function middleOf(element: HTMLElement | null): number {
+  return (element?.parentElement?.clientHeight ?? 0) / 2;
+}
+
+/** The profile once there are two points, and which side of the cut is taken away. */
+function Profile({ viewer }: { viewer: Viewer | null }) {
+  if (section.value === null) {
+    return (
+      <p class="reading" role="status">
+        Click the two ends of the cut. By keyboard: Tab to the crosshair.
+      </p>
+    );
+  }
+  return (
+    <div class="reading section" data-testid="section">
+      <SectionChart section={section.value} />
+      <div class="row">
+        <button type="button" onClick={() => viewer?.clip("other")}>
+          Other side
+        </button>
+        <button type="button" onClick={() => viewer?.clip("none")}>
+          Whole model
+        </button>
+      </div>
+    </div>
+  );
+}
+
+function Reading({ measured: found }: { measured: Measured | null }) {
+  if (found === null || found.distanceM === null || found.slope === null) {
+    return (
+      <p class="reading" role="status">
+        {found === null || found.points === 0
+          ? "Click two points, or more for an area. By keyboard: Tab to the crosshair."
+          : "One more point."}
+      </p>
+    );
+  }
+  const rows = [
+    ["Distance", `${found.distanceM.toFixed(2)} m`],
+    ["In plan", `${(found.planM ?? 0).toFixed(2)} m`],
+    ["Height", `${(found.heightM ?? 0).toFixed(2)} m`],
+    ["Slope", `${((found.slope * 180) / Math.PI).toFixed(1)}°`],
+    ...(found.areaM2 === null ? [] : [["Area", `${found.areaM2.toFixed(2)} m²`]]),
+  ] as const;
+  return (
+    <dl class="reading facts" aria-live="polite" data-testid="reading">
+      {rows.map(([name, value]) => (
+        <div key={name}>
+          <dt>{name}</dt>
+          <dd class="numbers">{value}</dd>
+        </div>
+      ))}
+    </dl>
+  );
+}

@@ -1,0 +1,9 @@
+import type { AdjacencyGraphs } from "../../shared/records";
+import type { Stage } from "../stage";
+
+export const adjacency = {
+  tabTitle: "Adjacency",
+  nothing: { adjacency: null as AdjacencyGraphs | null },
+  fetch: async (from) => ({ adjacency: await from.call("adjacency") }),
+  sections: { adjacency: "Adjacency graphs" },
+} satisfies Stage;

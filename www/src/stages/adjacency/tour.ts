@@ -1,0 +1,51 @@
+/** The tour: corners as wholes. */
+import { counted } from "../../app/parts/counted";
+import { results } from "../../app/state/results";
+import { selection } from "../../app/state/viewState";
+import { isVerifiedPlane } from "../../shared/proposed";
+import type { Results } from "../list";
+import type { StageStep } from "../tourStep";
+
+export default [
+  {
+    title: "Corners as wholes",
+    text: "A third partner matched no lines at all, but corners with everything that belongs to them: the edges that meet there and the regions between. What borders what in the images borders it in space too, so that one corner proposes several planes at once.",
+    question: "Pick a corner that proposes two planes or more, verified by the photographs.",
+    answer: () => {
+      const found = pickedCorner();
+      return found === null
+        ? ""
+        : `${counted(found.views, "views")} show it with ${counted(found.edges, "edges")}. The regions between these lie in ${counted(found.planes, "planes")}: no line was matched, and no plane sought.`;
+    },
+    hint: () => {
+      const found = pickedCorner();
+      return found === null || found.planes > 1
+        ? null
+        : "One plane or none: look for a corner where three edges meet.";
+    },
+    isFound: () => (pickedCorner()?.planes ?? 0) > 1,
+  },
+] satisfies readonly StageStep[];
+
+function pickedCorner(): CornerParts | null {
+  const picked = selection.value;
+  return picked?.kind === "corner" ? cornerParts(results.value, picked.index) : null;
+}
+
+interface CornerParts {
+  views: number;
+  edges: number;
+  /** Planes of its regions that the photographs verify. */
+  planes: number;
+}
+
+/** What a corner in space is; null where there is none. */
+export function cornerParts({ adjacency }: Pick<Results, "adjacency">, index: number): CornerParts | null {
+  const corner = adjacency?.trace.corners[index];
+  const own = adjacency?.planes.filter(
+    (plane) => isVerifiedPlane(plane) && plane.regions.some(([proposer]) => proposer === index),
+  );
+  return corner === undefined
+    ? null
+    : { views: corner.images.length, edges: corner.edges.length, planes: own?.length ?? 0 };
+}

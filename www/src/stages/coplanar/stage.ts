@@ -1,0 +1,8 @@
+import type { CoplanarSets } from "../../shared/records";
+import type { Stage } from "../stage";
+
+export const coplanar = {
+  nothing: { coplanar: null as CoplanarSets | null },
+  fetch: async (from) => ({ coplanar: await from.call("coplanar") }),
+  sections: { coplanar: "Coplanar sets" },
+} satisfies Stage;

@@ -1,0 +1,70 @@
+/** The tour: faces from coplanar lines. */
+import { counted } from "../../app/parts/counted";
+import { results } from "../../app/state/results";
+import { selection } from "../../app/state/viewState";
+import { coplanarSetsOf } from "../../shared/records";
+import type { Results } from "../list";
+import type { StageStep } from "../tourStep";
+
+export default [
+  {
+    title: "Coplanar lines",
+    text: "Another partner of the project looked for faces, not for half-planes: lines that lie in one plane are grouped, the convex hull of their ends is closed to a polygon by right angles and symmetry, and the photographs verify it.",
+    question:
+      "Pick a polygon of a facet of the model in which a side without a line was made square or mirrored.",
+    answer: () => {
+      const found = pickedSet();
+      return found === null
+        ? ""
+        : `${counted(found.lines, "lines")} lie in one plane. Its corners moved until the image edges were off by ${found.after.toFixed(2)} px instead of ${found.before.toFixed(2)} px (RMS).`;
+    },
+    hint: () => {
+      const found = pickedSet();
+      if (found === null) {
+        return null;
+      }
+      return found.moved === 0
+        ? "Every side of this one lies on a line: look for another."
+        : "No facet of the model has this polygon: it may lie on the ground.";
+    },
+    isFound: () => {
+      const found = pickedSet();
+      return found !== null && found.moved > 0 && found.facets.length > 0;
+    },
+  },
+] satisfies readonly StageStep[];
+
+function pickedSet(): CoplanarSetParts | null {
+  const picked = selection.value;
+  return picked?.kind === "coplanar" ? coplanarSetParts(results.value, picked.index) : null;
+}
+
+interface CoplanarSetParts {
+  lines: number;
+  /** Sides without a line that were made square or mirrored. */
+  moved: number;
+  /** Reprojection error of the wireframe before and after its adjustment, px. */
+  before: number;
+  after: number;
+  /** The facets that it proposed. */
+  facets: number[];
+}
+
+/** What a set of coplanar lines is; null where there is none. */
+export function coplanarSetParts(
+  { coplanar, facets }: Pick<Results, "coplanar" | "facets">,
+  index: number,
+): CoplanarSetParts | null {
+  const [set, trace] = [coplanar?.sets[index], coplanar?.trace.sets[index]];
+  if (set === undefined || trace === undefined) {
+    return null;
+  }
+  const [before, after] = trace.reprojection_px;
+  return {
+    lines: set.lines.length,
+    moved: trace.closing.length,
+    before,
+    after,
+    facets: (facets ?? []).flatMap((facet, i) => (coplanarSetsOf(facet).includes(index) ? [i] : [])),
+  };
+}

@@ -1,0 +1,119 @@
+/**
+ * Patches of dense matching (B99 2) as squares that lie in their planes, in the colour of what the plane is; patches in no
+ * plane are small and grey, where matching put them.
+ */
+import { BufferAttribute, BufferGeometry, Group, Mesh, MeshBasicMaterial } from "three";
+import { CLASS_COLOURS, PALETTE } from "../../shared/palette";
+import type { DensePlane, DensePlanes, Patch } from "../../shared/records";
+import type { Selection } from "../../shared/selection";
+import { gradientOf, heightAt, likeliestClass, planesOfPatches } from "../../shared/surfaceClass";
+import { opacityOf } from "../../viewer/scene/certainty";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../../viewer/scene/layer";
+import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { strokes } from "../../viewer/scene/strokes";
+
+/** Side of a square over the distance of neighbours: narrow gaps let single patches be seen. */
+const SIDE = { inPlane: 0.94, free: 0.36 };
+const OPACITY = { all: 0.95, free: 0.9, dimmed: 0.25 };
+const STEM_PX = 1.25;
+
+interface Square {
+  /** The middle, and the rise per metre along x and y. */
+  at: readonly [x: number, y: number, z: number];
+  gradient: readonly [number, number];
+  colour: readonly [red: number, green: number, blue: number, alpha: number];
+}
+
+export function buildDense(dense: DensePlanes): Layer {
+  const { patches, spacing_m } = dense.trace;
+  const object = zUpGroup();
+  const owners = planesOfPatches(dense);
+  const looks = dense.planes.map(lookOf);
+  const inPlane = patches.map((_, i) => i).filter((i) => (owners[i] as number) >= 0);
+  const free = patches.filter((_, i) => (owners[i] as number) < 0);
+  const squareOf = (i: number) => looks[owners[i] as number]?.(patches[i] as Patch) as Square;
+  const all = squares(inPlane.map(squareOf), SIDE.inPlane * spacing_m);
+  const others = squares(free.map(freeSquare), SIDE.free * spacing_m);
+  others.raycast = () => undefined;
+  object.add(all, others);
+  const chosen = new SelectedObject(object);
+
+  return {
+    object,
+    pick: (hit) => {
+      const patch = inPlane[Math.floor((hit.faceIndex ?? -1) / 2)];
+      return hit.object === all && patch !== undefined
+        ? { kind: "dense", index: owners[patch] as number }
+        : null;
+    },
+    highlight(selection: Selection | null) {
+      all.material.opacity = selection === null ? OPACITY.all : OPACITY.dimmed;
+      others.material.opacity = selection === null ? OPACITY.free : OPACITY.dimmed;
+      const plane = selection?.kind === "dense" ? dense.planes[selection.index] : undefined;
+      chosen.show(plane === undefined ? null : chosenPlane(plane, plane.patches.map(squareOf), dense));
+    },
+    dispose: () => disposeObject(object),
+  };
+}
+
+/** A plane's patches, and from each a stem to the height that it had by itself. */
+function chosenPlane(plane: DensePlane, own: readonly Square[], { trace }: DensePlanes): Group {
+  const bright = squares(own, SIDE.inPlane * trace.spacing_m);
+  const ends = plane.patches.flatMap((i) => {
+    const { middle, z } = trace.patches[i] as Patch;
+    return [...middle, heightAt(plane, ...middle), ...middle, z];
+  });
+  const stems = strokes(ends, PALETTE.selected, STEM_PX);
+  for (const part of [bright, stems]) {
+    part.raycast = () => undefined;
+  }
+  return new Group().add(bright, stems);
+}
+
+/** The squares of a plane: coloured by its most probable class, as opaque as that is certain. */
+function lookOf(plane: DensePlane): (patch: Patch) => Square {
+  const { name, probability } = likeliestClass(plane.class);
+  const colour = [...rgb(CLASS_COLOURS[name]), opacityOf(probability)] as const;
+  const gradient = gradientOf(plane);
+  return ({ middle }) => ({ at: [...middle, heightAt(plane, ...middle)], gradient, colour });
+}
+
+/** It stands out from a light background and from a dark one. */
+const GREY = [...rgb("#8d949e"), 1] as const;
+
+function freeSquare({ middle, z, gradient }: Patch): Square {
+  return { at: [...middle, z], gradient, colour: GREY };
+}
+
+/** The corners of a square in plan, in halves of its side, counter-clockwise. */
+const CORNERS = [
+  [-1, -1],
+  [1, -1],
+  [1, 1],
+  [-1, 1],
+] as const;
+
+/** All in one geometry: two triangles each, in their order. */
+export function squares(all: readonly Square[], side: number): Mesh<BufferGeometry, MeshBasicMaterial> {
+  const positions = new Float32Array(12 * all.length);
+  const colours = new Float32Array(16 * all.length);
+  const corners = new Uint32Array(6 * all.length);
+  all.forEach(({ at: [x, y, z], gradient: [gx, gy], colour }, i) => {
+    CORNERS.forEach(([across, along], k) => {
+      const [dx, dy] = [(across * side) / 2, (along * side) / 2];
+      positions.set([x + dx, y + dy, z + gx * dx + gy * dy], 12 * i + 3 * k);
+      colours.set(colour, 16 * i + 4 * k);
+    });
+    corners.set(
+      [0, 1, 2, 0, 2, 3].map((k) => 4 * i + k),
+      6 * i,
+    );
+  });
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(positions, 3));
+  geometry.setAttribute("color", new BufferAttribute(colours, 4));
+  geometry.setIndex(new BufferAttribute(corners, 1));
+  const material = new MeshBasicMaterial({ vertexColors: true, ...BOTH_SIDES, transparent: true });
+  return new Mesh(geometry, material);
+}

@@ -1,0 +1,77 @@
+/** The tour: planes without lines. */
+import { counted } from "../../app/parts/counted";
+import { percentText } from "../../app/parts/numberText";
+import { results } from "../../app/state/results";
+import { selection } from "../../app/state/viewState";
+import { densePlanesOf } from "../../shared/records";
+import { type ClassName, likeliestClass } from "../../shared/surfaceClass";
+import type { Results } from "../list";
+import type { StageStep } from "../tourStep";
+
+export default [
+  {
+    title: "Dense planes",
+    text: "Not every roof has a line that starts its plane. So small patches are matched all over the plan, by their texture alone, and those in one plane are joined. They find lawns and trees as well: what is a building follows from height, roughness and colour.",
+    question: "Pick a plane that is most probably a building, and that a facet of the model has.",
+    answer: () => {
+      const found = pickedDensePlane();
+      return found === null ? "" : `${denseWords(found)} ${halfPlaneWords(found)}`;
+    },
+    hint: () => {
+      const found = pickedDensePlane();
+      if (found === null) {
+        return null;
+      }
+      return found.name === "building"
+        ? "Most probably a building, but no facet of the model has this plane."
+        : `Most probably ${found.name} (${percentText(found.probability)}): look for another colour.`;
+    },
+    isFound: () => {
+      const found = pickedDensePlane();
+      return found?.name === "building" && found.facets.length > 0;
+    },
+  },
+] satisfies readonly StageStep[];
+
+function pickedDensePlane(): DensePlaneParts | null {
+  const picked = selection.value;
+  return picked?.kind === "dense" ? densePlaneParts(results.value, picked.index) : null;
+}
+
+function denseWords({ patches, rmsM, facets }: DensePlaneParts): string {
+  return `${counted(patches, "patches")}, each matched on its own, lie within ${(100 * rmsM).toFixed(0)} cm (RMS) of one plane: that of facet ${facets.join(", ")}.`;
+}
+
+function halfPlaneWords({ halfPlanes }: DensePlaneParts): string {
+  return halfPlanes === 0
+    ? "No half-plane found it."
+    : `From lines, ${counted(halfPlanes, "half-planes")} found it, too: two ways, one plane.`;
+}
+
+interface DensePlaneParts {
+  name: ClassName;
+  probability: number;
+  patches: number;
+  rmsM: number;
+  /** The facets that it proposed, and how many half-planes these were made from. */
+  facets: number[];
+  halfPlanes: number;
+}
+
+/** What a plane of dense matching is, and what became of it; null where there is none. */
+export function densePlaneParts(
+  { dense, facets }: Pick<Results, "dense" | "facets">,
+  index: number,
+): DensePlaneParts | null {
+  const plane = dense?.planes[index];
+  const proposed = (facets ?? []).flatMap((facet, i) => (densePlanesOf(facet).includes(index) ? [i] : []));
+  return plane === undefined
+    ? null
+    : {
+        ...likeliestClass(plane.class),
+        patches: plane.patches.length,
+        rmsM: plane.rms_m,
+        facets: proposed,
+        halfPlanes: new Set(proposed.flatMap((i) => facets?.[i]?.half_planes ?? [])).size,
+      };
+}

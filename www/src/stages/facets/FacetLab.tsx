@@ -1,0 +1,198 @@
+/** B99 figures 21 to 23: the facets in plan, each in the colour of its plane, and the border lines that enclose them. */
+import "../../app/view/figures/figures.css";
+import { closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
+import { counted } from "../../app/parts/counted";
+import { FOOTPRINT_WORDS } from "../../app/parts/knownText";
+import { facetRejectionWords } from "../../app/parts/reasonText";
+import { Filmstrip } from "../../app/view/images/Filmstrip";
+import type { Facet, FacetTrace, GroupingTrace, Vec2 } from "../../shared/records";
+import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
+import { roofTintHex } from "../../viewer/scene/roofTint";
+import type { Figure } from "../figure";
+
+/** Figures 21 to 23: border lines by their kind, what they enclose, and what was rejected. */
+export function FacetLab({ figure }: { figure: Figure }) {
+  const { grouping, verification, facets } = figure.results;
+  if (grouping === null || verification === null || facets === null) {
+    return <p class="lab-hint muted">Run the stage: the border lines in plan appear here.</p>;
+  }
+  return (
+    <div class="split-lab even">
+      <figure class="plan">
+        <Fit>{(frame) => <Plan {...{ frame, figure, grouping, verification, facets }} />}</Fit>
+        <figcaption class="muted numbers">
+          <ul class="legend">
+            {BORDER_KINDS.map((kind) => [kind, countOf(kind, grouping)] as const)
+              .filter(([, count]) => count > 0)
+              .map(([kind, count]) => (
+                <li key={kind}>
+                  <span class={`swatch border-${kind}`} aria-hidden="true" />
+                  {BORDER_WORDS[kind]} {count}
+                </li>
+              ))}
+            <li>
+              <span class="swatch rejected" aria-hidden="true" />
+              rejected {verification.rejected.length}
+            </li>
+            {verification.register !== undefined && (
+              <li title="their bounding boxes">
+                <span class="swatch footprint" aria-hidden="true" />
+                footprints {verification.register.footprints.length}
+              </li>
+            )}
+          </ul>
+        </figcaption>
+      </figure>
+      <Filmstrip figure={figure} />
+    </div>
+  );
+}
+
+const BORDER_KINDS = ["real", "inplane", "intersection", "closing", "rectangle"] as const;
+const BORDER_WORDS = {
+  real: "3D lines",
+  inplane: "new lines",
+  intersection: "intersections",
+  closing: "closing lines",
+  rectangle: "sides of rectangles",
+};
+
+function countOf(kind: (typeof BORDER_KINDS)[number], { borders }: GroupingTrace): number {
+  return borders.filter((border) => border.kind === kind).length;
+}
+
+/** In SVG the attribute has no capital. */
+const FOCUSABLE = { tabindex: 0 };
+
+interface PlanProps {
+  frame: Frame;
+  figure: Figure;
+  grouping: GroupingTrace;
+  verification: FacetTrace;
+  facets: readonly Facet[];
+}
+
+function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
+  const outlines = facets.map(({ outer }) => outer);
+  // The roofs, and the footprints that are known, fill the figure; border lines on the ground reach far beyond them.
+  const footprints = verification.register?.footprints ?? [];
+  const points: readonly (readonly number[])[] = [
+    ...(outlines.length > 0 ? outlines.flat() : grouping.borders.flatMap(({ a, b }): Vec2[] => [a, b])),
+    ...footprints.flatMap(({ bounds_m }) => bounds_m),
+  ];
+  const xs = points.map(([x = 0]) => x);
+  const ys = points.map(([, y = 0]) => y);
+  const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  const scale = Math.min(frame.width / (x1 - x0 || 1), frame.height / (y1 - y0 || 1)) * 0.9;
+  const at = ([x, y]: readonly number[]): [number, number] => [
+    frame.width / 2 + ((x as number) - (x0 + x1) / 2) * scale,
+    frame.height / 2 - ((y as number) - (y0 + y1) / 2) * scale,
+  ];
+  return (
+    // biome-ignore lint/a11y/useSemanticElements: SVG has no fieldset
+    <svg
+      class="chart plan-chart"
+      viewBox={`0 0 ${frame.width} ${frame.height}`}
+      role="group"
+      aria-label={`Plan: ${counted(grouping.borders.length, "border lines")}, ${counted(grouping.cells, "cells")}, ${counted(outlines.length, "facets")}; ${verification.rejected.length} rejected`}
+      data-testid="plan"
+    >
+      {facets.map((facet, i) => (
+        <PlanArea
+          key={i}
+          figure={figure}
+          picks={{ kind: "facet", index: i }}
+          name={`Facet ${i}`}
+          className="plan-facet"
+          fill={roofTintHex(facet)}
+          d={closedPathOf(facet.outer.map(at))}
+        />
+      ))}
+      {verification.rejected.map(({ outline, reason }, i) => (
+        <PlanArea
+          key={i}
+          figure={figure}
+          picks={{ kind: "rejectedFacet", index: i }}
+          name={`Rejected: ${facetRejectionWords(reason)}`}
+          className="plan-rejected"
+          d={closedPathOf(outline.map(at))}
+        />
+      ))}
+      {footprints.map(({ name, verdict, bounds_m: [[west, south], [east, north]] }, i) => (
+        <PlanArea
+          key={i}
+          figure={figure}
+          picks={{ kind: "footprint", index: i }}
+          name={`Footprint ${name}: ${FOOTPRINT_WORDS[verdict]}`}
+          className={`plan-footprint ${verdict}`}
+          d={closedPathOf(
+            [
+              [west, south],
+              [east, south],
+              [east, north],
+              [west, north],
+            ].map(at),
+          )}
+        />
+      ))}
+      {BORDER_KINDS.map((kind) => {
+        const own = grouping.borders.filter((border) => border.kind === kind);
+        const pathFor = (borders: typeof own) => borders.map(({ a, b }) => pathOf([at(a), at(b)])).join("");
+        const roof = own.filter((border) => isOfRoof(border, outlines));
+        const ground = own.filter((border) => !roof.includes(border));
+        return (
+          <g key={kind}>
+            <path class={`border-${kind} ground`} d={pathFor(ground)} />
+            <path class={`border-${kind}`} d={pathFor(roof)} data-count={own.length} />
+          </g>
+        );
+      })}
+      {outlines.map((ring, i) => {
+        const [x, y] = at(middleOf(ring));
+        return (
+          <text key={i} class="plan-name" x={x} y={y + 4} text-anchor="middle">
+            {i}
+          </text>
+        );
+      })}
+    </svg>
+  );
+}
+
+/** An outline that can be picked, by key as well. */
+function PlanArea(of: {
+  figure: Figure;
+  picks: { kind: "facet" | "rejectedFacet" | "footprint"; index: number };
+  name: string;
+  className: string;
+  fill?: string;
+  d: string;
+}) {
+  const { kind, index } = of.picks;
+  const picked = of.figure.selection;
+  const isChosen = picked?.kind === kind && picked.index === index;
+  const pick = () => {
+    of.figure.act.select(of.picks);
+  };
+  return (
+    // biome-ignore lint/a11y/useSemanticElements: SVG has no button
+    <path
+      role="button"
+      {...FOCUSABLE}
+      aria-label={of.name}
+      aria-pressed={isChosen}
+      class={`${of.className} ${isChosen ? "chosen" : ""}`}
+      d={of.d}
+      style={isChosen || of.fill === undefined ? undefined : { fill: of.fill }}
+      onClick={pick}
+      onKeyDown={(event) => {
+        if (event.key === "Enter" || event.key === " ") {
+          event.preventDefault();
+          pick();
+        }
+      }}
+    >
+      <title>{of.name}</title>
+    </path>
+  );
+}

@@ -1,0 +1,136 @@
+/**
+ * Groups of coplanar half-planes in colours of their own (B99 figures 17 to 20): the lines, the facets that they became, and
+ * names on these. Lines of groups without a facet, most of them on the ground, are thin and dim.
+ */
+import { Color } from "three";
+import { category, PALETTE } from "../../shared/palette";
+import { type Facet, type GroupingTrace, isMadeFrom, type Segment3 } from "../../shared/records";
+import type { Selection } from "../../shared/selection";
+import { facetMesh, triangulate } from "../../viewer/layers/facets";
+import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { disposeObject, type Layer } from "../../viewer/scene/layer";
+import { nameLabels } from "../../viewer/scene/nameLabels";
+import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { endsOf, strokes } from "../../viewer/scene/strokes";
+
+const WIDTH_PX = { roof: 3, other: 1.25, found: 1.75, selected: 5 };
+const OPACITY = { roof: 1, other: 0.35, found: 0.8, area: 0.45 };
+/** Of everything but the selection. */
+const DIMMED = 0.3;
+
+/**
+ * @param lines p0 and p1 of each 3D line, local frame, metres
+ * @param facets what the groups became
+ */
+export function buildGroups(
+  grouping: GroupingTrace,
+  lines: Float64Array,
+  facets: readonly Facet[] = [],
+): Layer {
+  const object = zUpGroup();
+  const became = facets.map((facet) => groupOf(facet, grouping));
+  const owner = owners(grouping, new Set(became));
+  const isRoof = ([, group]: readonly [number, number]) => facets.length === 0 || became.includes(group);
+  const roof = [...owner].filter(isRoof);
+  const other = [...owner].filter((one) => !isRoof(one));
+  const drawn = (members: readonly (readonly [number, number])[], widthPx: number) =>
+    strokes(
+      members.flatMap(([line]) => endsOf(lines, line)),
+      members.map(([, group]) => category(group)),
+      widthPx,
+    );
+  const outlines = facets.map(({ outer }) => outer);
+  const found = grouping.plane_lines.filter(
+    ({ segment }) => facets.length === 0 || isOver(segment, outlines),
+  );
+  const areas = facetMesh(
+    facets.map(triangulate),
+    became.map((group) => new Color(group < 0 ? PALETTE.unmatched : category(group))),
+  );
+  const parts = {
+    roof: drawn(roof, WIDTH_PX.roof),
+    other: drawn(other, WIDTH_PX.other),
+    found: strokes(
+      found.flatMap(({ segment }) => [...segment.p0, ...segment.p1]),
+      PALETTE.bar,
+      WIDTH_PX.found,
+    ),
+    area: areas,
+  };
+  object.add(...Object.values(parts), nameLabels(namesOf(facets, became)));
+  const groupOfTriangle = facets.flatMap((facet, i) =>
+    new Array<number>(triangulate(facet).length / 9).fill(became[i] as number),
+  );
+  const chosen = new SelectedObject(object);
+
+  return {
+    object,
+    pick: (hit) => {
+      const at = hit.faceIndex ?? -1;
+      const members = hit.object === parts.roof ? roof : hit.object === parts.other ? other : [];
+      const group = hit.object === areas ? groupOfTriangle[at] : members[at]?.[1];
+      return group === undefined || group < 0 ? null : { kind: "group", index: group };
+    },
+    highlight(selection: Selection | null) {
+      for (const name of Object.keys(parts) as (keyof typeof parts)[]) {
+        parts[name].material.opacity = OPACITY[name] * (selection === null ? 1 : DIMMED);
+      }
+      const group = selection?.kind === "group" ? grouping.groups[selection.index] : undefined;
+      const own = [...new Set(group?.members.map(({ line }) => line))];
+      const positions = own.flatMap((line) => endsOf(lines, line));
+      chosen.show(own.length === 0 ? null : strokes(positions, PALETTE.selected, WIDTH_PX.selected));
+    },
+    dispose: () => disposeObject(object),
+  };
+}
+
+/** The group that each line is drawn for: of several, one that became a facet, and of these the largest. */
+function owners(grouping: GroupingTrace, became: ReadonlySet<number>): Map<number, number> {
+  const order = grouping.groups
+    .map((group, index) => ({ group, index }))
+    .sort(
+      (a, b) =>
+        Number(became.has(b.index)) - Number(became.has(a.index)) ||
+        b.group.members.length - a.group.members.length,
+    );
+  const owner = new Map<number, number>();
+  for (const { group, index } of order) {
+    for (const { line } of group.members) {
+      if (!owner.has(line)) {
+        owner.set(line, index);
+      }
+    }
+  }
+  return owner;
+}
+
+/** The group that a facet was made from; -1 where none says so. */
+function groupOf(facet: Facet, { groups }: GroupingTrace): number {
+  return groups.findIndex((group) => isMadeFrom(facet, group));
+}
+
+/** Each group's number on its largest facet. */
+function namesOf(facets: readonly Facet[], became: readonly number[]) {
+  const size = ({ outer }: Facet) =>
+    Math.max(...outer.map(([x, y]) => Math.hypot(x - (outer[0]?.[0] ?? 0), y - (outer[0]?.[1] ?? 0))));
+  const largest = new Map<number, Facet>();
+  facets.forEach((facet, i) => {
+    const group = became[i] as number;
+    const last = largest.get(group);
+    if (group >= 0 && (last === undefined || size(facet) > size(last))) {
+      largest.set(group, facet);
+    }
+  });
+  return [...largest].map(([group, { outer }]) => ({ text: String(group), at: middleOf(outer) }));
+}
+
+/** Whether a line lies over a facet and not below the roof. */
+function isOver({ p0, p1 }: Segment3, outlines: readonly Facet["outer"][]): boolean {
+  const height = (p0[2] + p1[2]) / 2;
+  const near = outlines.filter((ring) => ring.some(([, , z]) => z <= height + BELOW_M));
+  return isOfRoof({ a: [p0[0], p0[1]], b: [p1[0], p1[1]] }, near);
+}
+
+/** A line so far below the lowest corner of a facet is not of it. */
+const BELOW_M = 0.5;

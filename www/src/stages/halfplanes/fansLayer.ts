@@ -1,0 +1,129 @@
+/** Half-planes as fans: a strip from the 3D line into the half-plane, fading away from the line. */
+import {
+  BufferAttribute,
+  BufferGeometry,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  Vector3,
+} from "three";
+import { LINE_STRIDE } from "../../shared/flatArrays";
+import { PALETTE } from "../../shared/palette";
+import { type HalfPlane, isRejected, type Side, type SideRecord, type Vec3 } from "../../shared/records";
+import type { Selection } from "../../shared/selection";
+import { fanRing, fanWidth } from "../../viewer/scene/fanRing";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../../viewer/scene/layer";
+
+const REJECTED_OFFSET_M = 0.25;
+const ALPHA = { near: 0.75, far: 0.08, dimmed: 0.3 };
+
+/**
+ * @param lines p0 and p1 of each 3D line, local frame, metres
+ * @param sides every side of every line: the rejected ones become thin red lines beside theirs
+ */
+export function buildFans(
+  halfPlanes: readonly HalfPlane[],
+  lines: Float64Array,
+  sides: readonly SideRecord[] = [],
+): Layer {
+  const object = zUpGroup();
+  const corners = halfPlanes.map((halfPlane) => fanCorners(halfPlane, lines));
+  const all = fanMesh(corners, PALETTE.halfPlane);
+  const rejectedSides = sides.filter(isRejected);
+  const rejected = rejectedLines(rejectedSides, lines);
+  object.add(all, rejected);
+  let chosen: Mesh<BufferGeometry, MeshBasicMaterial> | null = null;
+
+  return {
+    object,
+    pick: (hit) => {
+      if (hit.object !== rejected) {
+        return { kind: "halfplane", index: Math.floor((hit.faceIndex ?? 0) / 2) };
+      }
+      const side = rejectedSides[Math.floor((hit.index ?? -1) / 2)];
+      return side === undefined ? null : { kind: "side", line: side.line, side: side.side };
+    },
+    highlight(selection: Selection | null) {
+      if (chosen !== null) {
+        object.remove(chosen);
+        disposeObject(chosen);
+        chosen = null;
+      }
+      all.material.opacity = selection === null ? 1 : ALPHA.dimmed;
+      rejected.material.opacity = selection === null ? 0.8 : ALPHA.dimmed;
+      const corner = selection?.kind === "halfplane" ? corners[selection.index] : undefined;
+      if (corner !== undefined) {
+        chosen = fanMesh([corner], PALETTE.selected);
+        chosen.renderOrder = 2;
+        object.add(chosen);
+      }
+    },
+    dispose: () => disposeObject(object),
+  };
+}
+
+/** The half-plane that is being turned by hand: one fan at `theta` (radians) about the line from `p0` to `p1`. */
+export function buildTurning(ends: readonly [Vec3, Vec3], side: Side, theta: number): Layer {
+  const object = zUpGroup();
+  const [p0, p1] = ends.map((end) => new Vector3(...end)) as [Vector3, Vector3];
+  const direction = p1.clone().sub(p0);
+  const width = fanWidth(direction.length());
+  direction.normalize();
+  // The frame of theta, as the core states it: horizontal and away from the line, and upwards across both.
+  const outward = new Vector3(-direction.y, direction.x, 0)
+    .normalize()
+    .multiplyScalar(side === "left" ? 1 : -1);
+  const up = direction.clone().cross(outward);
+  up.multiplyScalar(up.z < 0 ? -1 : 1);
+  const away = outward.multiplyScalar(width * Math.cos(theta)).addScaledVector(up, width * Math.sin(theta));
+  const fan = fanMesh([[p0, p1, p1.clone().add(away), p0.clone().add(away)]], PALETTE.selected);
+  fan.renderOrder = 3;
+  fan.raycast = () => undefined;
+  object.add(fan);
+  return { object, pick: () => null, highlight: () => undefined, dispose: () => disposeObject(object) };
+}
+
+/** A thin line beside the 3D line, on the rejected side of it. */
+function rejectedLines(
+  sides: readonly SideRecord[],
+  lines: Float64Array,
+): LineSegments<BufferGeometry, LineBasicMaterial> {
+  const points = sides.flatMap(({ line, side }) => {
+    const at = line * LINE_STRIDE;
+    const p0 = new Vector3().fromArray(lines, at);
+    const p1 = new Vector3().fromArray(lines, at + 3);
+    const left = new Vector3(p0.y - p1.y, p1.x - p0.x, 0).normalize();
+    const away = left.multiplyScalar(side === "left" ? REJECTED_OFFSET_M : -REJECTED_OFFSET_M);
+    return [p0.add(away), p1.add(away)];
+  });
+  const material = new LineBasicMaterial({ color: PALETTE.rejected, transparent: true });
+  return new LineSegments(new BufferGeometry().setFromPoints(points), material);
+}
+
+/** Start and end on the line, then end and start away from it. */
+export function fanCorners(halfPlane: HalfPlane, lines: Float64Array): Vector3[] {
+  return fanRing(halfPlane, lines).map((corner) => new Vector3(...corner));
+}
+
+function fanMesh(corners: readonly Vector3[][], colour: string): Mesh<BufferGeometry, MeshBasicMaterial> {
+  const base = rgb(colour);
+  const positions = corners.flatMap((fan) => fan.flatMap((corner) => corner.toArray()));
+  const colours = corners.flatMap(() => [
+    ...[...base, ALPHA.near, ...base, ALPHA.near],
+    ...[...base, ALPHA.far, ...base, ALPHA.far],
+  ]);
+  const indices = corners.flatMap((_, i) => [0, 1, 2, 0, 2, 3].map((corner) => 4 * i + corner));
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(Float32Array.from(positions), 3));
+  geometry.setAttribute("color", new BufferAttribute(Float32Array.from(colours), 4));
+  geometry.setIndex(indices);
+  const material = new MeshBasicMaterial({
+    vertexColors: true,
+    transparent: true,
+    ...BOTH_SIDES,
+    depthWrite: false,
+  });
+  return new Mesh(geometry, material);
+}

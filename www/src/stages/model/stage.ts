@@ -1,0 +1,20 @@
+import type { GroundTexture } from "../../shared/calls";
+import type { Stage } from "../stage";
+
+type Glb = Uint8Array<ArrayBuffer>;
+
+export const model = {
+  nothing: {
+    glb: null as Glb | null,
+    /** The models of the tiles that are done, as long as they are not joined. */
+    tileGlbs: [] as readonly Glb[],
+    ground: null as GroundTexture | null,
+  },
+  fetch: async (from) => ({
+    glb: await from.call("exportFile", "model.glb"),
+    ground: await from.call("ground"),
+  }),
+  sections: { texture: "Texture" },
+  mainCount: "textured faces",
+  isCorrected: true,
+} satisfies Stage;

@@ -1,0 +1,174 @@
+/** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
+import "../../app/view/figures/figures.css";
+import { axesOf, Chart, Fit, type Frame } from "../../app/parts/charts";
+import { counted } from "../../app/parts/counted";
+import { RELATION_WORDS, refinementWords } from "../../app/parts/reasonText";
+import { SplitLab } from "../../app/view/figures/SplitLab";
+import { buildingOfFacet, relationLimit } from "../../kinds/parts/refinedBuildings";
+import type { BuildingRefinement, TestedRelation } from "../../shared/records";
+import type { Figure } from "../figure";
+
+const KINDS = ["horizontal", "parallel", "perpendicular", "equal_height", "symmetric"] as const;
+/** The axis is the logarithm of chi-square, between these. */
+const LEAST = -3;
+const MOST = 3;
+/** Room for the names of the kinds. */
+const NAMES_PX = 96;
+
+export function RefinementLab({ figure }: { figure: Figure }) {
+  const buildings = figure.results.refinement?.buildings ?? [];
+  const building = shownBuilding(figure);
+  const shown = buildings[building];
+  if (shown === undefined) {
+    return <p class="lab-hint muted">Run the stage: what refinement tested appears here.</p>;
+  }
+  return (
+    <SplitLab figure={figure} testid="refinement-lab">
+      <label class="pair-choice">
+        Building
+        <select
+          value={building}
+          onChange={(event) => {
+            figure.act.select({ kind: "refinement", index: Number(event.currentTarget.value) });
+          }}
+        >
+          {buildings.map((one, i) => (
+            <option key={one.building} value={i}>
+              {i} · {refinementWords(one)}
+            </option>
+          ))}
+        </select>
+      </label>
+      <Fit>{(frame) => <Relations outer={frame} figure={figure} building={building} of={shown} />}</Fit>
+    </SplitLab>
+  );
+}
+
+/** The building of the selection, or the one with the most relations. */
+function shownBuilding({ results, selection: picked }: Figure): number {
+  const { buildings = [] } = results.refinement ?? {};
+  switch (picked?.kind) {
+    case "refinement":
+      return Math.min(picked.index, buildings.length - 1);
+    case "relation":
+      return Math.min(picked.building, buildings.length - 1);
+    case "facet":
+      return buildingOfFacet(picked.index, results) ?? 0;
+    default:
+      return buildings.reduce(
+        (best, { relations }, i) => (relations.length > (buildings[best]?.relations.length ?? 0) ? i : best),
+        0,
+      );
+  }
+}
+
+interface RelationsProps {
+  outer: Frame;
+  figure: Figure;
+  building: number;
+  of: BuildingRefinement;
+}
+
+/** A row for each kind of relation; left of the dashed line is adopted. */
+function Relations({ outer, figure, building, of }: RelationsProps) {
+  const frame = { ...outer, left: NAMES_PX };
+  const x = { min: LEAST, max: MOST };
+  const y = { min: 0.5, max: KINDS.length + 0.5 };
+  const [toX, toY] = axesOf(frame, x, y);
+  const row = (kind: TestedRelation["kind"]) => KINDS.length - KINDS.indexOf(kind);
+  const limit = relationLimit(figure.params);
+  if (of.relations.length === 0) {
+    return <p class="lab-hint muted">No relation was near enough to be tested here.</p>;
+  }
+  return (
+    <Chart
+      frame={frame}
+      x={x}
+      y={y}
+      xTitle="log₁₀ χ²"
+      yTitle=""
+      yTicks={[]}
+      label={`${counted(of.relations.length, "tested relations")} by chi-square, ${of.relations.filter(({ adopted }) => adopted).length} adopted`}
+      interactive
+      testid="relations"
+    >
+      {KINDS.map((kind) => (
+        <g key={kind}>
+          <line
+            class="grid"
+            x1={frame.left}
+            x2={frame.width - frame.right}
+            y1={toY(row(kind))}
+            y2={toY(row(kind))}
+          />
+          <text x={frame.left - 8} y={toY(row(kind)) + 3.5} text-anchor="end">
+            {RELATION_WORDS[kind]}
+          </text>
+        </g>
+      ))}
+      {limit !== null && (
+        <line
+          class="threshold"
+          x1={toX(Math.log10(limit))}
+          x2={toX(Math.log10(limit))}
+          y1={frame.top}
+          y2={frame.height - frame.bottom}
+        />
+      )}
+      {of.relations.map((one, i) => (
+        <Dot
+          key={i}
+          relation={one}
+          cx={toX(Math.min(MOST, Math.max(LEAST, Math.log10(Math.max(one.chi2, 1e-9)))))}
+          cy={toY(row(one.kind)) + spread(i)}
+          isPicked={isPicked(figure, building, i)}
+          onPick={() => {
+            figure.act.select({ kind: "relation", building, index: i });
+          }}
+        />
+      ))}
+    </Chart>
+  );
+}
+
+/** In SVG the attribute has no capital. */
+const FOCUSABLE = { tabindex: 0 };
+
+function Dot(of: {
+  relation: TestedRelation;
+  cx: number;
+  cy: number;
+  isPicked: boolean;
+  onPick: () => void;
+}) {
+  const { kind, chi2, adopted } = of.relation;
+  return (
+    // biome-ignore lint/a11y/useSemanticElements: SVG has no button
+    <circle
+      role="button"
+      {...FOCUSABLE}
+      aria-label={`${RELATION_WORDS[kind]}, χ² ${chi2.toFixed(1)}, ${adopted ? "adopted" : "rejected"}`}
+      aria-pressed={of.isPicked}
+      class={`relation ${adopted ? "adopted" : "rejected"} ${of.isPicked ? "picked-dot" : ""}`}
+      cx={of.cx}
+      cy={of.cy}
+      r={of.isPicked ? 6 : 4}
+      onClick={of.onPick}
+      onKeyDown={(event) => {
+        if (event.key === "Enter" || event.key === " ") {
+          event.preventDefault();
+          of.onPick();
+        }
+      }}
+    />
+  );
+}
+
+function isPicked({ selection: picked }: Figure, building: number, index: number): boolean {
+  return picked?.kind === "relation" && picked.building === building && picked.index === index;
+}
+
+/** Moves the dots of a row apart, the same way every time. */
+function spread(i: number): number {
+  return (((i * 0.618034) % 1) - 0.5) * 12;
+}

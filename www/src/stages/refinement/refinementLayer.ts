@@ -1,0 +1,74 @@
+/**
+ * Buildings before refinement, as outlines over the refined facets; gaps that were opened; the sides of relations that were
+ * tested (B99 2).
+ */
+import { Group } from "three";
+import { PALETTE } from "../../shared/palette";
+import { outlinesBefore } from "../../shared/proposed";
+import type { Refinement, Segment3 } from "../../shared/records";
+import type { Selection } from "../../shared/selection";
+import { zUpGroup } from "../../viewer/scene/frame";
+import { disposeObject, type Layer } from "../../viewer/scene/layer";
+import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { sidesOf, strokes } from "../../viewer/scene/strokes";
+
+const WIDTH_PX = 1.75;
+const SELECTED_PX = 4;
+const DIMMED = 0.3;
+
+export function buildRefinement(refinement: Refinement): Layer {
+  const object = zUpGroup();
+  const facets = refinement.before.facets;
+  const before = over(
+    sidesOf(facets.flatMap(({ outer, holes }) => [outer, ...holes])),
+    PALETTE.grown,
+    WIDTH_PX,
+  );
+  const gaps = over(ends(refinement.gaps.map(({ side }) => side)), PALETTE.rejected, WIDTH_PX);
+  object.add(before, gaps);
+  const chosen = new SelectedObject(object);
+  return {
+    object,
+    pick: () => null,
+    highlight(selection: Selection | null) {
+      before.material.opacity = selection === null ? 1 : DIMMED;
+      chosen.show(shownOf(refinement, selection));
+    },
+    dispose: () => disposeObject(object),
+  };
+}
+
+/** The old outline of a building with the sides of its relations, or the sides of one of them. */
+function shownOf(refinement: Refinement, selection: Selection | null): Group | null {
+  if (selection?.kind === "relation") {
+    const relation = refinement.buildings[selection.building]?.relations[selection.index];
+    return relation === undefined
+      ? null
+      : new Group().add(over(ends(relation.sides), PALETTE.selected, SELECTED_PX));
+  }
+  const index = selection?.kind === "refinement" ? selection.index : -1;
+  const found = refinement.buildings[index];
+  if (found === undefined) {
+    return null;
+  }
+  const sides = (adopted: boolean) =>
+    ends(found.relations.filter((one) => one.adopted === adopted).flatMap((one) => one.sides));
+  return new Group().add(
+    over(sidesOf(outlinesBefore(refinement, index)), PALETTE.grown, SELECTED_PX),
+    over(sides(false), PALETTE.rejected, SELECTED_PX / 2),
+    over(sides(true), PALETTE.bar, SELECTED_PX / 2),
+  );
+}
+
+function ends(sides: readonly Segment3[]): number[] {
+  return sides.flatMap(({ p0, p1 }) => [...p0, ...p1]);
+}
+
+/** Over the facets, which hide half of what lies in them otherwise. */
+function over(positions: number[], colour: string, widthPx: number) {
+  const lines = strokes(positions, colour, widthPx);
+  lines.material.depthTest = false;
+  lines.renderOrder = 3;
+  lines.raycast = () => undefined;
+  return lines;
+}

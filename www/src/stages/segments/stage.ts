@@ -1,0 +1,11 @@
+import { perView, type Stage } from "../stage";
+
+export const segments = {
+  nothing: { segments: [] as Float32Array[], rejected: [] as Float32Array[] },
+  fetch: async (from) => ({
+    segments: await perView(from, "segments"),
+    rejected: await perView(from, "rejectedSegments"),
+  }),
+  sections: { segments: "Segments" },
+  mainCount: "segments",
+} satisfies Stage;
