@@ -16,6 +16,7 @@ const FLOORS: [(&str, &[&str]); 12] = [
         "base",
         &[
             "math",
+            "least_squares",
             "geometry",
             "ids",
             "plan_index",
