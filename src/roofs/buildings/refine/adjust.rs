@@ -64,6 +64,8 @@ pub(super) enum Term {
     Relation(Relation, f64),
     /// What somebody states of it, with its standard deviation, metres.
     Stated(Statement, f64),
+    /// What holds unless more speaks against it: robust.
+    Believed(Box<Self>),
 }
 
 /// A least-squares problem.
@@ -164,9 +166,9 @@ impl<'a> AdjustmentProblem<'a> {
         })
     }
 
-    /// Number of measured edges.
+    /// Number of what is measured or believed.
     pub(super) fn observations(&self) -> usize {
-        let observation = |t: &&Term| matches!(t, Term::Edge(_));
+        let observation = |t: &&Term| matches!(t, Term::Edge(_) | Term::Believed(_));
         self.terms.iter().filter(observation).count()
     }
 
@@ -181,7 +183,7 @@ impl<'a> AdjustmentProblem<'a> {
         let mut at = state.clone();
         for term in &self.terms {
             let loss = match term {
-                Term::Edge(_) => Loss::Cauchy(self.loss),
+                Term::Edge(_) | Term::Believed(_) => Loss::Cauchy(self.loss),
                 _ => Loss::Squares,
             };
             let unknowns = self.unknowns(term);
@@ -203,7 +205,7 @@ impl<'a> AdjustmentProblem<'a> {
     }
 
     /// Weighted residuals of a term; the second is 0 where there is one only.
-    pub(super) fn residual(&self, term: &Term, state: &WireframeState) -> Option<[f64; 2]> {
+    fn residual(&self, term: &Term, state: &WireframeState) -> Option<[f64; 2]> {
         let w = self.wireframe;
         Some(match term {
             Term::Edge(s) => {
@@ -239,6 +241,7 @@ impl<'a> AdjustmentProblem<'a> {
             }
             Term::Relation(relation, sigma) => [relation.value(w, state) / sigma, 0.0],
             Term::Stated(statement, sigma) => statement.value(w, state).map(|r| r / sigma),
+            Term::Believed(term) => self.residual(term, state)?,
         })
     }
 
@@ -289,6 +292,7 @@ impl<'a> AdjustmentProblem<'a> {
             }
             Term::Relation(relation, _) => relation.unknowns(w),
             Term::Stated(statement, _) => statement.unknowns(w),
+            Term::Believed(term) => self.unknowns(term),
         }
     }
 }
