@@ -17,6 +17,7 @@ const FLOORS: [(&str, &[&str]); 12] = [
         "base",
         &[
             "math",
+            "least_squares",
             "geometry",
             "ids",
             "plan_index",

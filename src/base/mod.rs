@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! math          elementary functions with the same bits on every target
+//! least_squares sums of squared residuals, robust, and the steps that minimise them
 //! ids           newtypes of views, segments, lines, facets
 //! geometry      points, segments, planes
 //! plan_index    boxes in plan
@@ -23,6 +24,7 @@ pub mod geometry;
 pub mod ids;
 pub(crate) mod json;
 pub(crate) mod labelling;
+pub(crate) mod least_squares;
 pub(crate) mod math;
 pub mod params;
 pub(crate) mod plan_index;

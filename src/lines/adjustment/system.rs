@@ -10,13 +10,12 @@
 //! X - C  ->  (X - C) - shift - turn x (X - C)
 //! ```
 
-use nalgebra::{
-    DMatrix, DVector, Matrix4, Matrix4x6, Matrix6x2, Matrix6x4, Point2, Vector2, Vector3, Vector6,
-};
+use nalgebra::{Matrix4, Matrix4x6, Matrix6x2, Matrix6x4, Point2, Vector2, Vector3, Vector6};
 
 use super::pose::PoseChange;
 use crate::base::execution::parallel;
 use crate::base::geometry::Segment3;
+use crate::base::least_squares::{EnvelopeEquations, Loss, Pattern, Stop, fit};
 use crate::base::params::Lines3dParams;
 use crate::lines::lines2d::GuidedEdge;
 use crate::lines::lines3d::{
@@ -28,11 +27,11 @@ use crate::photographs::camera::Camera;
 /// small enough to separate the two, large enough to correct errors of several pixels.
 const PRIOR_PX: f64 = 5.0;
 
-/// Number of linearisations.
-const ROUNDS: usize = 6;
-
-/// A step that lowers the cost by a smaller share ends the rounds.
-const LEAST_STEP: f64 = 1e-4;
+/// Each step fits all lines anew, and what it gains is compared with hundredths of the cost.
+const STOP: Stop = Stop {
+    steps: 6,
+    least_gain: 1e-4,
+};
 
 /// Fewest edges of a line: two interpretation planes always meet in a line.
 const FEWEST_EDGES: usize = 3;
@@ -103,37 +102,21 @@ impl<'a> BundleAdjustment<'a> {
         from: &AdjustmentState,
         stated: &[Camera],
     ) -> AdjustmentState {
-        let mut state = from.clone();
-        state.free.push(view);
-        for _ in 0..ROUNDS {
-            let Some(step) = self.step(&state, stated) else {
-                break;
-            };
-            let next = self.stepped(&state, &step, stated);
-            let gain = state.cost - next.cost;
-            if gain <= 0.0 {
-                break;
-            }
-            let ends = gain < LEAST_STEP * state.cost;
-            state = next;
-            if ends {
-                break;
-            }
-        }
-        state
+        let mut start = from.clone();
+        start.free.push(view);
+        let pattern = Pattern::dense(6 * start.free.len());
+        let equations = |state: &AdjustmentState| Some(self.equations(state, stated, &pattern));
+        let moved = |state: &AdjustmentState, step: &Vec<f64>| self.stepped(state, step, stated);
+        let adjusted = fit(start, equations, moved, STOP);
+        adjusted.expect("every state has equations").0
     }
 
     /// The state after a step of the free poses.
-    fn stepped(
-        &self,
-        from: &AdjustmentState,
-        step: &DVector<f64>,
-        stated: &[Camera],
-    ) -> AdjustmentState {
+    fn stepped(&self, from: &AdjustmentState, step: &[f64], stated: &[Camera]) -> AdjustmentState {
         let mut changes = from.changes.clone();
         for (k, &view) in from.free.iter().enumerate() {
-            changes[view].turn += step.fixed_rows::<3>(6 * k);
-            changes[view].shift_m += step.fixed_rows::<3>(6 * k + 3);
+            changes[view].turn += Vector3::from_column_slice(&step[6 * k..6 * k + 3]);
+            changes[view].shift_m += Vector3::from_column_slice(&step[6 * k + 3..6 * k + 6]);
         }
         self.fitted(stated, from.free.clone(), changes, Some(&from.lines))
     }
@@ -150,18 +133,22 @@ impl<'a> BundleAdjustment<'a> {
         let fits = parallel::map(&self.tracks, |i, track| {
             let start = near.and_then(|lines| lines[i]).unwrap_or(track.line);
             let fit = fit_line(&track.observations(&cameras), &start, self.params)?;
-            let cost = fit.residuals.iter().map(|r| self.rho(r * r)).sum::<f64>();
+            let cost = fit
+                .residuals
+                .iter()
+                .map(|r| self.loss().cost(r * r))
+                .sum::<f64>();
             Some((fit.line, cost))
         });
         let mut cost = 0.0;
         for (fit, track) in fits.iter().zip(&self.tracks) {
-            let none = || track.edges.len() as f64 * self.rho(GROSS * GROSS);
+            let none = || track.edges.len() as f64 * self.loss().cost(GROSS * GROSS);
             cost += fit.map_or_else(none, |f| f.1);
         }
         for &view in &free {
             let prior = self.prior(&stated[view]);
             let squares = pose(&changes[view]).component_mul(&pose(&changes[view]));
-            cost += 0.5 * squares.dot(&prior);
+            cost += squares.dot(&prior);
         }
         AdjustmentState {
             free,
@@ -171,10 +158,8 @@ impl<'a> BundleAdjustment<'a> {
         }
     }
 
-    /// Cauchy's loss of a squared residual.
-    fn rho(&self, square: f64) -> f64 {
-        let c2 = self.params.loss_scale * self.params.loss_scale;
-        0.5 * c2 * crate::base::math::ln(1.0 + square / c2)
+    fn loss(&self) -> Loss {
+        Loss::Cauchy(self.params.loss_scale)
     }
 
     /// Weights of (turn, shift) of a view, 1 / rad^2 and 1 / m^2.
@@ -187,31 +172,30 @@ impl<'a> BundleAdjustment<'a> {
         Vector6::new(turn, turn, turn, shift, shift, shift).map(|w| w * w)
     }
 
-    /// Gauss-Newton's step of the free poses.
-    fn step(&self, state: &AdjustmentState, stated: &[Camera]) -> Option<DVector<f64>> {
+    /// The normal equations of the free poses.
+    fn equations<'p>(
+        &self,
+        state: &AdjustmentState,
+        stated: &[Camera],
+        pattern: &'p Pattern,
+    ) -> EnvelopeEquations<'p> {
         let cameras = moved(stated, &state.changes);
-        let size = 6 * state.free.len();
-        let (mut normal, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
+        let mut equations = EnvelopeEquations::new(pattern);
+        equations.cost = state.cost;
         for (track, line) in self.tracks.iter().zip(&state.lines) {
             if let Some(line) = line {
-                self.add(
-                    track,
-                    line,
-                    &cameras,
-                    &state.free,
-                    (&mut normal, &mut right),
-                );
+                self.add(track, line, &cameras, &state.free, &mut equations);
             }
         }
         for (k, &view) in state.free.iter().enumerate() {
             let weights = self.prior(&stated[view]);
             let pull = weights.component_mul(&pose(&state.changes[view]));
             for i in 0..6 {
-                normal[(6 * k + i, 6 * k + i)] += weights[i];
-                right[6 * k + i] -= pull[i];
+                equations.matrix[(6 * k + i, 6 * k + i)] += weights[i];
+                equations.gradient[6 * k + i] += pull[i];
             }
         }
-        Some(normal.cholesky()?.solve(&right))
+        equations
     }
 
     /// Adds a line's part of the normal equations, the line itself eliminated.
@@ -221,31 +205,34 @@ impl<'a> BundleAdjustment<'a> {
         line: &Segment3,
         cameras: &[Camera],
         free: &[usize],
-        (normal, right): (&mut DMatrix<f64>, &mut DVector<f64>),
+        equations: &mut EnvelopeEquations,
     ) -> Option<()> {
         let across = line_frame(&line.direction());
-        let c2 = self.params.loss_scale * self.params.loss_scale;
         let mut of_line = Matrix4::zeros();
         let mut of_poses: Vec<(usize, Matrix6x4<f64>)> = Vec::new();
         for (edge, seen) in track.edges.iter().zip(track.observations(cameras)) {
             let (r, j) = WhitenedObservation::new(&seen, self.params).residual(line, &across)?;
-            let weight = 1.0 / (1.0 + r.norm_squared() / c2);
+            let weight = self.loss().weight(r.norm_squared());
             of_line += j * j.transpose() * weight;
             let Some(k) = free.iter().position(|&v| v == edge.view.index()) else {
                 continue;
             };
             let a: Matrix6x2<f64> = anchors_by_pose(line, &across, seen.camera).transpose() * j;
-            let mut block = normal.fixed_view_mut::<6, 6>(6 * k, 6 * k);
-            block += a * a.transpose() * weight;
-            let mut rows = right.fixed_rows_mut::<6>(6 * k);
-            rows -= a * r * weight;
+            let block = a * a.transpose() * weight;
+            equations.matrix.add_block(6 * k, 6 * k, &block);
+            for (g, pull) in equations.gradient[6 * k..]
+                .iter_mut()
+                .zip(&(a * r * weight))
+            {
+                *g += pull;
+            }
             of_poses.push((k, a * j.transpose() * weight));
         }
         let inverse = of_line.try_inverse()?;
         for (k, a) in &of_poses {
-            for (l, b) in &of_poses {
-                let mut block = normal.fixed_view_mut::<6, 6>(6 * k, 6 * l);
-                block -= a * inverse * b.transpose();
+            for (l, b) in of_poses.iter().filter(|(l, _)| l <= k) {
+                let block = -(a * inverse * b.transpose());
+                equations.matrix.add_block(6 * k, 6 * l, &block);
             }
         }
         Some(())

@@ -18,6 +18,7 @@ use nalgebra::{Matrix2, Point2};
 use super::segment::SegmentKind;
 use crate::base::geometry::Segment2;
 use crate::base::ids::ViewId;
+use crate::base::least_squares::Loss;
 use crate::photographs::raster::Gray;
 
 /// Shortest piece whose profile is averaged, px.
@@ -245,8 +246,8 @@ impl OffsetLine {
     /// One step with Cauchy weights.
     fn reweighted(&self, points: &[(f64, f64)]) -> Self {
         let weight = |&(t, o): &(f64, f64)| {
-            let r = (o - self.at(t)) / LOSS_PX;
-            1.0 / (1.0 + r * r)
+            let r = o - self.at(t);
+            Loss::Cauchy(LOSS_PX).weight(r * r)
         };
         let sum = |f: &dyn Fn(&(f64, f64)) -> f64| -> f64 {
             points.iter().map(|p| weight(p) * f(p)).sum()

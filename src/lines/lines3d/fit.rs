@@ -1,5 +1,5 @@
-//! One 3D line fitted to its image segments (B99 3.2, figure 4): Levenberg-Marquardt on the
-//! distances between measured segments and the image of the line.
+//! One 3D line fitted to its image segments (B99 3.2, figure 4): least squares of the distances
+//! between measured segments and the image of the line.
 //!
 //! The line has four parameters: the offsets of two anchor points in the two directions across it,
 //! in metres. That is minimal, free of singularities for the small steps taken here, and its
@@ -7,12 +7,11 @@
 //! after each step. The loss is Cauchy's, so that one wrong segment among several views does not
 //! move the line.
 
-use nalgebra::{Matrix3, Matrix4, Matrix4x2, Vector2, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 
-use super::observation::{
-    Observation, PlaneConstraint, WhitenedObservation, cauchy_weight, line_frame,
-};
+use super::observation::{Observation, PlaneConstraint, WhitenedObservation, line_frame};
 use crate::base::geometry::Segment3;
+use crate::base::least_squares::{Loss, NormalEquations, Stop, fit, variance_of_unit_weight};
 use crate::base::params::Lines3dParams;
 
 /// Weight of the prior that the stated covariances are right, in residuals.
@@ -79,34 +78,26 @@ pub fn fit_line_on(
         .iter()
         .map(|o| WhitenedObservation::new(o, params))
         .collect();
-    let normal_equations = |line: &Segment3| normal_equations(&whitened, constraints, line, params);
-    let mut line = *initial;
-    let mut state = normal_equations(&line)?;
-    let mut damping = 1e-4;
-    for _ in 0..params.max_iterations {
-        let mut system = state.hessian;
-        for i in 0..4 {
-            system[(i, i)] *= 1.0 + damping;
-        }
-        let step = system.cholesky()?.solve(&-state.gradient);
-        let moved = displace(&line, &state.across, &step);
-        match normal_equations(&moved) {
-            Some(next) if next.cost <= state.cost => {
-                let gain = state.cost - next.cost;
-                (line, state) = (moved, next);
-                damping = (damping * 0.2).max(1e-9);
-                // A gain of a millionth of one standard deviation squared changes no digit of use.
-                if gain <= 1e-6 * (1.0 + state.cost) {
-                    break;
-                }
-            }
-            _ => damping *= 10.0,
-        }
-        if damping > 1e6 {
-            break;
-        }
-    }
-    finish(line, state, constraints.len())
+    let loss = Loss::Cauchy(params.loss_scale);
+    let linearised = |line: &Segment3| normal_equations(&whitened, constraints, line, loss);
+    let stop = Stop {
+        steps: params.max_iterations,
+        ..Stop::default()
+    };
+    let (line, equations) = fit(*initial, linearised, displaced, stop)?;
+    let across = line_frame(&line.direction());
+    let residuals = whitened
+        .iter()
+        .map(|o| Some(o.residual(&line, &across)?.0.norm()));
+    let redundancy = 2.0 * (whitened.len() + constraints.len()) as f64 - 4.0;
+    let variance = variance_of_unit_weight(equations.cost, redundancy, SCATTER_PRIOR);
+    Some(LineFit {
+        line,
+        across,
+        // Where nothing determines the line, rounding may leave the information indefinite.
+        covariance: equations.inverse()? * variance,
+        residuals: residuals.collect::<Option<_>>()?,
+    })
 }
 
 /// How well observations would determine a line if they agreed with it: [`LineFit`] without
@@ -120,89 +111,39 @@ pub fn conditioning(
         .iter()
         .map(|o| WhitenedObservation::new(o, params))
         .collect();
-    let across = line_frame(&line.direction());
-    let mut information = Matrix4::zeros();
-    for o in &whitened {
-        let (_, j) = o.residual(line, &across)?;
-        information += j * j.transpose();
-    }
     Some(LineFit {
         line: *line,
-        across,
-        covariance: information.cholesky()?.inverse(),
+        across: line_frame(&line.direction()),
+        covariance: normal_equations(&whitened, &[], line, Loss::Squares)?.inverse()?,
         residuals: Vec::new(),
     })
-}
-
-fn finish(line: Segment3, state: NormalEquations, constraints: usize) -> Option<LineFit> {
-    // Where nothing determines the line, rounding may leave the information indefinite.
-    let covariance = state.hessian.cholesky()?.inverse();
-    // The covariance is scaled by the variance of unit weight. Three views have a redundancy of
-    // only two; the prior counts like as many expected residuals.
-    let redundancy = (2.0 * (state.residuals.len() + constraints) as f64 - 4.0).max(0.0);
-    let factor = (2.0 * state.cost + SCATTER_PRIOR) / (redundancy + SCATTER_PRIOR);
-    let factor = factor.max(1.0);
-    Some(LineFit {
-        line,
-        across: state.across,
-        covariance: covariance * factor,
-        residuals: state.residuals,
-    })
-}
-
-/// Gauss-Newton's normal equations at a line.
-struct NormalEquations {
-    across: [Vector3<f64>; 2],
-    cost: f64,
-    gradient: Vector4<f64>,
-    hessian: Matrix4<f64>,
-    residuals: Vec<f64>,
 }
 
 fn normal_equations(
     observations: &[WhitenedObservation],
     constraints: &[PlaneConstraint],
     line: &Segment3,
-    params: &Lines3dParams,
-) -> Option<NormalEquations> {
+    loss: Loss,
+) -> Option<NormalEquations<4>> {
     let across = line_frame(&line.direction());
-    let c2 = params.loss_scale * params.loss_scale;
-    let mut normal = NormalEquations {
-        across,
-        cost: 0.0,
-        gradient: Vector4::zeros(),
-        hessian: Matrix4::zeros(),
-        residuals: Vec::with_capacity(observations.len()),
-    };
+    let mut equations = NormalEquations::default();
     for o in observations {
         let (r, j) = o.residual(line, &across)?;
-        let length = normal.add(r, j, c2);
-        normal.residuals.push(length);
+        equations.add(&r, &j.transpose(), loss);
     }
     for constraint in constraints {
         let (r, j) = constraint.residual(line, &across);
-        normal.add(r, j, c2);
+        equations.add(&r, &j.transpose(), loss);
     }
-    Some(normal)
+    Some(equations)
 }
 
-impl NormalEquations {
-    /// Adds two residuals with Cauchy's loss rho = c^2/2 ln(1 + e^2/c^2), whose weight is 1 / (1 +
-    /// e^2/c^2). Returns e.
-    fn add(&mut self, r: Vector2<f64>, j: Matrix4x2<f64>, c2: f64) -> f64 {
-        let e2 = r.norm_squared();
-        self.cost += 0.5 * c2 * crate::base::math::ln(1.0 + e2 / c2);
-        let weight = cauchy_weight(e2, c2);
-        self.gradient += j * r * weight;
-        self.hessian += j * j.transpose() * weight;
-        e2.sqrt()
-    }
-}
-
-fn displace(line: &Segment3, across: &[Vector3<f64>; 2], step: &Vector4<f64>) -> Segment3 {
+/// The line with its ends moved in the two directions across it.
+fn displaced(line: &Segment3, step: &Vector4<f64>) -> Segment3 {
+    let [u, v] = line_frame(&line.direction());
     Segment3::new(
-        line.p0 + across[0] * step[0] + across[1] * step[1],
-        line.p1 + across[0] * step[2] + across[1] * step[3],
+        line.p0 + u * step[0] + v * step[1],
+        line.p1 + u * step[2] + v * step[3],
     )
 }
 
@@ -211,9 +152,10 @@ mod tests {
     use super::super::plane_intersection::line_of_planes;
     use super::*;
     use crate::base::geometry::{Plane, Segment2};
+    use crate::base::least_squares::worst_derivative;
     use crate::photographs::camera::Camera;
     use crate::photographs::camera::testing::crop_camera;
-    use nalgebra::{Matrix2, Point2, Point3};
+    use nalgebra::{Matrix2, Point2, Point3, Vector2};
 
     fn cameras() -> Vec<Camera> {
         [
@@ -332,22 +274,10 @@ mod tests {
         let across = line_frame(&line.direction());
         for o in &observations {
             let o = WhitenedObservation::new(o, &Lines3dParams::default());
-            let (_, j) = o.residual(&line, &across).unwrap();
-            for k in 0..4 {
-                let mut step = Vector4::zeros();
-                step[k] = 1e-4;
-                let at = |s: Vector4<f64>| {
-                    o.residual(&displace(&line, &across, &s), &across)
-                        .unwrap()
-                        .0
-                };
-                let d = (at(step) - at(-step)) / 2e-4;
-                let analytic = j.row(k).transpose();
-                assert!(
-                    (d - analytic).norm() < 1e-4 * (1.0 + analytic.norm()),
-                    "{d} {analytic}"
-                );
-            }
+            let at = |line: &Segment3| o.residual(line, &across).unwrap();
+            let jacobian = at(&line).1.transpose();
+            let off = worst_derivative(&jacobian, |step| at(&displaced(&line, step)).0);
+            assert!(off < 1e-4, "{off}");
         }
     }
 

@@ -5,7 +5,7 @@
 //! track               the edges of one line in all views, as matching gives them
 //!    -> observation   an edge as a whitened residual of the line (offset and angle)
 //!    -> plane_intersection    start: where the interpretation planes meet
-//!    -> fit           four parameters, Levenberg-Marquardt with Cauchy's loss, covariance
+//!    -> fit           four parameters, least squares with Cauchy's loss, covariance
 //!    -> extent        end points: the union of the stretches that the views support
 //!    -> reconstruct   the stage: one line for each track, or why there is none
 //!
@@ -32,7 +32,7 @@ pub(crate) use extent::doubly_covered;
 pub use fit::{LineFit, conditioning, fit_line, fit_line_on};
 pub use line::{Line3d, LineContradiction, LineOrigin};
 pub use observation::{Observation, PlaneConstraint};
-pub(crate) use observation::{WhitenedObservation, line_frame};
+pub(crate) use observation::{WhitenedObservation, edge_whitening, line_frame};
 pub use plane_intersection::line_of_planes;
 pub use projection::{ProjectedLine, ReprojectionGate};
 pub use reconstruct::{LineOutcome, LineTrace, reconstruct_lines};

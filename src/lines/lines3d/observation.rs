@@ -7,6 +7,7 @@
 use nalgebra::{Matrix2, Matrix3, Matrix4x2, Point3, Vector2, Vector3};
 
 use crate::base::geometry::{Plane, Segment2, Segment3};
+use crate::base::least_squares::{Loss, whitening};
 use crate::base::params::Lines3dParams;
 use crate::lines::lines2d::GuidedEdge;
 use crate::photographs::camera::Camera;
@@ -36,8 +37,8 @@ impl<'a> Observation<'a> {
     pub fn weight(&self, line: &Segment3, params: &Lines3dParams) -> f64 {
         let residual =
             WhitenedObservation::new(self, params).residual(line, &line_frame(&line.direction()));
-        let c2 = params.loss_scale * params.loss_scale;
-        residual.map_or(0.0, |(r, _)| cauchy_weight(r.norm_squared(), c2))
+        let loss = Loss::Cauchy(params.loss_scale);
+        residual.map_or(0.0, |(r, _)| loss.weight(r.norm_squared()))
     }
 }
 
@@ -79,21 +80,12 @@ pub(crate) struct WhitenedObservation {
 impl WhitenedObservation {
     pub(crate) fn new(o: &Observation, params: &Lines3dParams) -> Self {
         let length = o.segment.length().max(1.0);
-        let floor = params.position_floor_px;
-        let mut c = o.covariance;
-        c[(0, 0)] += floor * floor;
-        // The same floor at the two ends, opposite in sign, seen as an angle.
-        c[(1, 1)] += 4.0 * floor * floor / (length * length);
-        let whitening = c
-            .cholesky()
-            .and_then(|l| l.l().try_inverse())
-            .unwrap_or_else(|| Matrix2::new(1.0 / floor, 0.0, 0.0, 0.5 * length / floor));
         Self {
             m: o.camera.k * o.camera.r,
             center: o.camera.center,
             segment: o.segment,
             length,
-            whitening,
+            whitening: edge_whitening(&o.covariance, length, params.position_floor_px),
         }
     }
 
@@ -133,9 +125,14 @@ impl WhitenedObservation {
     }
 }
 
-/// Weight of an observation with residual e under Cauchy's loss of scale c.
-pub(super) fn cauchy_weight(e2: f64, c2: f64) -> f64 {
-    1.0 / (1.0 + e2 / c2)
+/// Whitens (offset, angle) of an edge of `length` px with an error of `floor` px at both ends that
+/// its covariance does not know.
+pub(crate) fn edge_whitening(covariance: &Matrix2<f64>, length: f64, floor: f64) -> Matrix2<f64> {
+    let mut c = *covariance;
+    c[(0, 0)] += floor * floor;
+    // The same floor at the two ends, opposite in sign, seen as an angle.
+    c[(1, 1)] += 4.0 * floor * floor / (length * length);
+    whitening(&c).unwrap_or_else(|| Matrix2::new(1.0 / floor, 0.0, 0.0, 0.5 * length / floor))
 }
 
 /// Two unit vectors across a direction, built on the coordinate axis farthest from it.

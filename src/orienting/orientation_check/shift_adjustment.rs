@@ -3,10 +3,11 @@
 //!
 //! World points are eliminated track by track (Schur complement); rho is Huber's.
 
-use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, Point2, Point3, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix2x3, Matrix3, Point2, Point3, Vector2, Vector3};
 
 use super::epipolar_check::EpipolarCheck;
 use super::subpixel::PointMatch;
+use crate::base::least_squares::{EnvelopeEquations, Loss, NormalEquations, Pattern, Stop, fit};
 use crate::photographs::camera::Camera;
 
 /// Share of the cost that freeing a view must remove. Measured: at most 0.022 in correct scenes,
@@ -22,9 +23,6 @@ const MIN_REDUNDANCY: usize = 60;
 
 /// Fewest observations of a view that may be freed.
 const MIN_OBSERVATIONS: usize = 12;
-
-/// Iterations of linearising and reweighting.
-const ROUNDS: usize = 5;
 
 /// Magnitudes of the residuals.
 pub(crate) struct ResidualScale {
@@ -113,22 +111,8 @@ impl<'a> ShiftAdjustment<'a> {
         lengths
     }
 
-    /// The sum of rho over all observations, pixels^2.
-    fn cost(&self, shifts: &[Vector2<f64>]) -> f64 {
-        let huber_px = self.scale.huber_px;
-        let rho = |length: f64| match length <= huber_px {
-            true => 0.5 * length * length,
-            false => huber_px * (length - 0.5 * huber_px),
-        };
-        let of_track = |track: &Vec<ImagePoint>| -> f64 {
-            let world = self.triangulate(track, shifts);
-            let of_observation = |observation: &ImagePoint| {
-                let r = world.and_then(|world| self.residual(observation, &world, shifts));
-                rho(r.map_or(self.scale.gross_px, |r| r.norm()))
-            };
-            track.iter().map(of_observation).sum()
-        };
-        self.tracks.iter().map(of_track).sum()
+    fn loss(&self) -> Loss {
+        Loss::Huber(self.scale.huber_px)
     }
 
     fn meets(&self, track: &[ImagePoint]) -> bool {
@@ -162,29 +146,79 @@ impl<'a> ShiftAdjustment<'a> {
             normal += across;
             right += across * (camera.center - base);
         }
-        let mut world = base + normal.lu().solve(&right)?;
-        for _ in 0..3 {
-            let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        let equations = |world: &Point3<f64>| {
+            let mut equations = NormalEquations::default();
             for observation in track {
-                let r = self.residual(observation, &world, shifts)?;
-                let j = self.cameras[observation.0].project_jacobian(&world)?;
-                let w = self.huber(&r);
-                normal += j.transpose() * j * w;
-                right += j.transpose() * r * w;
+                let r = self.residual(observation, world, shifts)?;
+                let j = self.cameras[observation.0].project_jacobian(world)?;
+                equations.add(&r, &-j, self.loss());
             }
-            world += normal.cholesky()?.solve(&right);
-        }
+            Some(equations)
+        };
+        let start = base + normal.lu().solve(&right)?;
+        let (world, _) = fit(start, equations, |at, step| at + step, Stop::default())?;
         world.coords.iter().all(|v| v.is_finite()).then_some(world)
     }
 
-    /// Weight of a residual under Huber's norm.
-    fn huber(&self, residual: &Vector2<f64>) -> f64 {
-        let huber_px = self.scale.huber_px;
-        let length = residual.norm();
-        match length <= huber_px {
-            true => 1.0,
-            false => huber_px / length,
+    /// The normal equations of changes of the shifts of some views, world points eliminated;
+    /// weighted by [`ResidualScale::sigma_px`], at the sum of rho over all observations, pixels^2.
+    fn equations<'p>(
+        &self,
+        shifts: &[Vector2<f64>],
+        free: &[usize],
+        pattern: &'p Pattern,
+    ) -> EnvelopeEquations<'p> {
+        let mut equations = EnvelopeEquations::new(pattern);
+        for track in &self.tracks {
+            let world = self.triangulate(track, shifts);
+            for observation in track {
+                let r = world.and_then(|world| self.residual(observation, &world, shifts));
+                let length = r.map_or(self.scale.gross_px, |r| r.norm());
+                equations.cost += self.loss().cost(length * length);
+            }
+            if let Some(world) = world {
+                self.add(track, &world, shifts, free, &mut equations);
+            }
         }
+        equations
+    }
+
+    fn add(
+        &self,
+        track: &[ImagePoint],
+        world: &Point3<f64>,
+        shifts: &[Vector2<f64>],
+        free: &[usize],
+        equations: &mut EnvelopeEquations,
+    ) -> Option<()> {
+        let variance = self.scale.sigma_px * self.scale.sigma_px;
+        let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        let mut rows: Vec<(usize, Matrix2x3<f64>, Vector2<f64>, f64)> = Vec::new();
+        for observation in track {
+            let r = self.residual(observation, world, shifts)?;
+            let j = self.cameras[observation.0].project_jacobian(world)?;
+            let w = self.loss().weight(r.norm_squared()) / variance;
+            normal += j.transpose() * j * w;
+            right += j.transpose() * r * w;
+            if let Some(slot) = free.iter().position(|&view| view == observation.0) {
+                rows.push((slot, j, r, w));
+            }
+        }
+        let inverse = normal.try_inverse()?;
+        for (a, ja, ra, wa) in &rows {
+            let pull = (ja * inverse * right - ra) * *wa;
+            for (g, pull) in equations.gradient[2 * a..].iter_mut().zip(&pull) {
+                *g += pull;
+            }
+            equations
+                .matrix
+                .add_block(2 * a, 2 * a, &(Matrix2::identity() * *wa));
+            for (b, jb, _, wb) in rows.iter().filter(|(b, ..)| b <= a) {
+                let block = ja * inverse * jb.transpose() * -(wa * wb);
+                equations.matrix.add_block(2 * a, 2 * b, &block);
+            }
+        }
+        Some(())
     }
 }
 
@@ -218,7 +252,7 @@ impl ShiftSolution {
         let count = adjustment.cameras.len();
         let shifts = vec![Vector2::zeros(); count];
         Self {
-            cost: adjustment.cost(&shifts),
+            cost: adjustment.equations(&shifts, &[], &Pattern::dense(0)).cost,
             sigmas: vec![0.0; count],
             free: Vec::new(),
             shifts,
@@ -229,101 +263,28 @@ impl ShiftSolution {
     fn freeing(view: usize, from: &Self, adjustment: &ShiftAdjustment) -> Option<Self> {
         let mut free = from.free.clone();
         free.push(view);
-        let (mut shifts, mut sigmas) = (from.shifts.clone(), from.sigmas.clone());
-        for _ in 0..ROUNDS {
-            let (changes, found) = ReducedNormals::of(adjustment, &shifts).solve(&free)?;
-            for ((&i, change), sigma) in free.iter().zip(changes).zip(found) {
-                shifts[i] += change;
-                sigmas[i] = sigma;
+        let pattern = Pattern::dense(2 * free.len());
+        let equations =
+            |shifts: &Vec<Vector2<f64>>| Some(adjustment.equations(shifts, &free, &pattern));
+        let moved = |shifts: &Vec<Vector2<f64>>, step: &Vec<f64>| {
+            let mut moved = shifts.clone();
+            for (&i, step) in free.iter().zip(step.chunks(2)) {
+                moved[i] += Vector2::new(step[0], step[1]);
             }
+            moved
+        };
+        let (shifts, equations) = fit(from.shifts.clone(), equations, moved, Stop::default())?;
+        let inverse = equations.matrix.cholesky()?.inverse();
+        let mut sigmas = from.sigmas.clone();
+        for (k, &i) in free.iter().enumerate() {
+            let of = |axis: usize| inverse[(2 * k + axis, 2 * k + axis)];
+            sigmas[i] = of(0).max(of(1)).sqrt();
         }
-        let cost = adjustment.cost(&shifts);
         Some(Self {
+            cost: equations.cost,
             free,
             shifts,
             sigmas,
-            cost,
         })
-    }
-}
-
-/// Normal equations of changes of the shifts, world points eliminated; weighted by
-/// [`ResidualScale::sigma_px`].
-struct ReducedNormals {
-    normal: DMatrix<f64>,
-    right: DVector<f64>,
-}
-
-impl ReducedNormals {
-    fn of(adjustment: &ShiftAdjustment, shifts: &[Vector2<f64>]) -> Self {
-        let size = 2 * adjustment.cameras.len();
-        let mut system = Self {
-            normal: DMatrix::zeros(size, size),
-            right: DVector::zeros(size),
-        };
-        for track in &adjustment.tracks {
-            system.add(track, adjustment, shifts);
-        }
-        system
-    }
-
-    /// Adds a track; one whose point cannot be triangulated contributes nothing.
-    fn add(
-        &mut self,
-        track: &[ImagePoint],
-        adjustment: &ShiftAdjustment,
-        shifts: &[Vector2<f64>],
-    ) -> Option<()> {
-        let world = adjustment.triangulate(track, shifts)?;
-        let variance = adjustment.scale.sigma_px * adjustment.scale.sigma_px;
-        let mut rows: Vec<(usize, Matrix2x3<f64>, Vector2<f64>, f64)> = Vec::new();
-        for observation in track {
-            let r = adjustment.residual(observation, &world, shifts)?;
-            rows.push((
-                observation.0,
-                adjustment.cameras[observation.0].project_jacobian(&world)?,
-                r,
-                adjustment.huber(&r) / variance,
-            ));
-        }
-        let sum = |f: &dyn Fn(&Matrix2x3<f64>, f64) -> Matrix3<f64>| {
-            rows.iter()
-                .map(|(_, j, _, w)| f(j, *w))
-                .sum::<Matrix3<f64>>()
-        };
-        let point = sum(&|j, w| j.transpose() * j * w).try_inverse()?;
-        let point_right: Vector3<f64> =
-            rows.iter().map(|(_, j, r, w)| j.transpose() * r * *w).sum();
-        for (a, ja, ra, wa) in &rows {
-            let mut at = self.right.fixed_rows_mut::<2>(2 * a);
-            at += (ra - ja * point * point_right) * *wa;
-            let mut diagonal = self.normal.fixed_view_mut::<2, 2>(2 * a, 2 * a);
-            diagonal += nalgebra::Matrix2::identity() * *wa;
-            for (b, jb, _, wb) in &rows {
-                let mut block = self.normal.fixed_view_mut::<2, 2>(2 * a, 2 * b);
-                block -= ja * point * jb.transpose() * (wa * wb);
-            }
-        }
-        Some(())
-    }
-
-    /// Changes of the shifts of these views, the others staying, and their standard deviations,
-    /// pixels.
-    fn solve(&self, free: &[usize]) -> Option<(Vec<Vector2<f64>>, Vec<f64>)> {
-        let index = |k: usize| 2 * free[k / 2] + k % 2;
-        let size = 2 * free.len();
-        let normal = DMatrix::from_fn(size, size, |a, b| self.normal[(index(a), index(b))]);
-        let right = DVector::from_fn(size, |a, _| self.right[index(a)]);
-        let factors = normal.cholesky()?;
-        let change = factors.solve(&right);
-        let inverse = factors.inverse();
-        let of_view = |k: usize| {
-            let variance = inverse[(2 * k, 2 * k)].max(inverse[(2 * k + 1, 2 * k + 1)]);
-            (
-                Vector2::new(change[2 * k], change[2 * k + 1]),
-                variance.sqrt(),
-            )
-        };
-        Some((0..free.len()).map(of_view).unzip())
     }
 }

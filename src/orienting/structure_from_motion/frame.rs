@@ -17,6 +17,7 @@ use super::linear::rotation_between;
 use super::random::Random;
 use super::similarity::Similarity;
 use crate::base::geometry::{mean_point, rotation_from_axis_angle};
+use crate::base::least_squares::Loss;
 use crate::base::math;
 use crate::orienting::orientation::Anchor;
 
@@ -197,7 +198,7 @@ fn robust_similarity(from: &[Point3<f64>], to: &[Point3<f64>]) -> Option<(Simila
         let scale = 2.0 * math::median(&mut distances(&best))?.max(0.1 * POSITION_NOISE_M);
         weights = distances(&best)
             .iter()
-            .map(|d| 1.0 / (1.0 + d * d / (scale * scale)))
+            .map(|d| Loss::Cauchy(scale).weight(d * d))
             .collect();
         best = Similarity::between(from, to, &weights)?;
     }

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::graph::{CornerEdge, ImageCorner, ImageGraph};
 use crate::base::ids::ViewId;
+use crate::base::least_squares::{Loss, NormalEquations, Stop, fit, whitening};
 use crate::base::math::{atan2, ln, median};
 use crate::orienting::scene::Scene;
 use crate::planes::coplanar::log_normal;
@@ -79,8 +80,6 @@ impl<'a> Sighting<'a> {
 /// The place that fits some images best, and its covariance. `None` where the rays do not meet in
 /// front of the cameras.
 pub(super) fn place(scene: &Scene, seen: &[Sighting]) -> Option<(Point3<f64>, Matrix3<f64>)> {
-    /// Corners are a hundredth of their distance off at the start, and the steps are Newton's.
-    const ROUNDS: usize = 4;
     let (mut m, mut v) = (Matrix3::zeros(), Vector3::zeros());
     let origin = scene.camera(seen.first()?.view).center;
     for s in seen {
@@ -90,21 +89,19 @@ pub(super) fn place(scene: &Scene, seen: &[Sighting]) -> Option<(Point3<f64>, Ma
         m += across;
         v += across * (camera.center - origin);
     }
-    let mut at = origin + m.try_inverse()? * v;
-    let mut covariance = Matrix3::zeros();
-    for _ in 0..ROUNDS {
-        let (mut information, mut sum) = (Matrix3::zeros(), Vector3::zeros());
+    let equations = |at: &Point3<f64>| {
+        let mut equations = NormalEquations::default();
         for s in seen {
             let camera = scene.camera(s.view);
-            let (image, j) = (camera.project(&at)?, camera.project_jacobian(&at)?);
-            let weight = s.corner.covariance().try_inverse()?;
-            information += j.transpose() * weight * j;
-            sum += j.transpose() * weight * (s.corner.at - image);
+            let (image, j) = (camera.project(at)?, camera.project_jacobian(at)?);
+            let w = whitening(&s.corner.covariance())?;
+            equations.add(&(w * (image - s.corner.at)), &(w * j), Loss::Squares);
         }
-        covariance = information.try_inverse()?;
-        at += covariance * sum;
-    }
-    Some((at, covariance))
+        Some(equations)
+    };
+    let start = origin + m.try_inverse()? * v;
+    let (at, equations) = fit(start, equations, |at, step| at + step, Stop::default())?;
+    Some((at, equations.inverse()?))
 }
 
 /// Logarithm of the normal density of a place in an image around another one.

@@ -1,7 +1,10 @@
 //! The maximum of a sampled `Sim(theta)`: position, curvature, uncertainty, acceptance (B99 figure
 //! 12).
 
+use nalgebra::{RowVector3, Vector1};
+
 use super::trace::SweepRejection;
+use crate::base::least_squares::{Equations, Loss, NormalEquations};
 use crate::base::params::{Acceptance, SweepParams};
 
 /// A parabola `value + slope (theta - at) + curvature (theta - at)^2 / 2`.
@@ -25,23 +28,21 @@ impl SimilarityParabola {
         at: f64,
         reach: f64,
     ) -> Option<Self> {
-        let mut normal = nalgebra::Matrix3::zeros();
-        let mut right = nalgebra::Vector3::zeros();
+        let mut equations = NormalEquations::default();
         let mut count = 0;
         for (theta, sim) in samples {
             // In units of the reach, which keeps the normal equations well conditioned.
             let t = (theta - at) / reach;
             if t.abs() <= 1.0 + 1e-9 {
-                let row = nalgebra::Vector3::new(1.0, t, 0.5 * t * t);
-                normal += row * row.transpose();
-                right += row * sim;
+                let row = RowVector3::new(1.0, t, 0.5 * t * t);
+                equations.add(&Vector1::new(-sim), &row, Loss::Squares);
                 count += 1;
             }
         }
         if count < 3 {
             return None;
         }
-        let c = normal.cholesky()?.solve(&right);
+        let c = equations.step(0.0)?;
         Some(Self {
             at,
             value: c.x,

@@ -16,6 +16,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::image_lines::ImageLine;
+use crate::base::least_squares::Loss;
 use crate::base::math::{atan2, exp, ln, sin_cos};
 use crate::base::params::DirectionParams;
 
@@ -268,7 +269,7 @@ fn refined(start: f64, cuts: &[[f64; 2]]) -> f64 {
         for [a, weight] in cuts {
             let d = difference(*a, azimuth);
             if d.abs() < WIDEST {
-                let w = weight / (1.0 + (d / SCALE) * (d / SCALE));
+                let w = weight * Loss::Cauchy(SCALE).weight(d * d);
                 sum += w * d;
                 weights += w;
             }

@@ -12,7 +12,8 @@ use nalgebra::{Point2, Point3};
 
 use crate::base::geometry::{Segment2, Segment3};
 use crate::base::ids::ViewId;
-use crate::base::math::{ln, median};
+use crate::base::least_squares::Loss;
+use crate::base::math::median;
 use crate::lines::linematch::nview::EDGE_MARGIN_PX;
 use crate::orienting::scene::Scene;
 use crate::photographs::raster::{Channel, Gray};
@@ -54,7 +55,7 @@ pub(crate) fn shown_along(scene: &Scene, views: &[ViewId], lines: &[Option<Segme
                 .max(f64::MIN_POSITIVE);
             for (score, step) in scores.iter_mut().zip(steps) {
                 let ratio = step.unwrap_or(0.0) / typical;
-                *score = score.max(ln(1.0 + ratio * ratio));
+                *score = score.max(Loss::Cauchy(1.0).cost(ratio * ratio));
             }
         }
         scores

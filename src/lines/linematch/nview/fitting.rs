@@ -2,6 +2,7 @@
 
 use super::context::{MIN_MEASURED, MatchContext, MatchRejection};
 use crate::base::geometry::Segment3;
+use crate::base::least_squares::Loss;
 use crate::lines::linematch::segment_geometry::SegmentRef;
 use crate::lines::lines2d::GuidedEdge;
 use crate::lines::lines3d::{LineFit, Observation, fit_line};
@@ -54,7 +55,7 @@ impl MatchContext<'_> {
         let (fit, kept) = self.fit_consistent(start, segments).ok()?;
         let agrees = |s: &SegmentRef| {
             let i = kept.iter().position(|k| k == s)?;
-            Some(1.0 / (1.0 + fit.residuals[i] * fit.residuals[i]))
+            Some(Loss::Cauchy(1.0).weight(fit.residuals[i] * fit.residuals[i]))
         };
         Some(segments.iter().map(|s| agrees(s).unwrap_or(0.0)).collect())
     }

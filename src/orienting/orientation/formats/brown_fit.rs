@@ -3,8 +3,9 @@
 //! The coefficients (ideal to measured, [`Distortion`]) and a change of the focal length are found
 //! by least squares over pairs of points; all of them are linear.
 
-use nalgebra::{Matrix6, Point2, Vector6};
+use nalgebra::{Point2, RowVector6, Vector1};
 
+use crate::base::least_squares::{Equations, Loss, NormalEquations};
 use crate::photographs::camera::Distortion;
 
 /// A distortion, and the factor of its focal length.
@@ -26,15 +27,14 @@ pub(crate) fn fit(pairs: &[(Point2<f64>, Point2<f64>)]) -> Option<FittedLens> {
         return None;
     }
     // Scaled by the farthest point, so that high powers keep their precision.
-    let (mut normal, mut right) = (Matrix6::zeros(), Vector6::zeros());
+    let mut equations = NormalEquations::default();
     for (ideal, measured) in pairs {
         let (d, change) = (ideal.coords / far, (measured - ideal) / far);
         for (row, change) in basis(d.x, d.y).iter().zip(change.iter()) {
-            normal += row * row.transpose();
-            right += row * *change;
+            equations.add(&Vector1::new(-change), row, Loss::Squares);
         }
     }
-    let c = normal.cholesky()?.solve(&right);
+    let c = equations.step(0.0)?;
     let unit2 = 1.0 / (far * far);
     let focal_factor = 1.0 + c[0];
     let radial = [
@@ -57,10 +57,11 @@ pub(crate) fn fit(pairs: &[(Point2<f64>, Point2<f64>)]) -> Option<FittedLens> {
 }
 
 /// Derivatives of x and y with respect to (scale, k1, k2, k3, p1, p2).
-fn basis(x: f64, y: f64) -> [Vector6<f64>; 2] {
+fn basis(x: f64, y: f64) -> [RowVector6<f64>; 2] {
     let r2 = x * x + y * y;
-    let row =
-        |d: f64, p1: f64, p2: f64| Vector6::new(d, d * r2, d * r2 * r2, d * r2 * r2 * r2, p1, p2);
+    let row = |d: f64, p1: f64, p2: f64| {
+        RowVector6::new(d, d * r2, d * r2 * r2, d * r2 * r2 * r2, p1, p2)
+    };
     [
         row(x, 2.0 * x * y, r2 + 2.0 * x * x),
         row(y, r2 + 2.0 * y * y, 2.0 * x * y),

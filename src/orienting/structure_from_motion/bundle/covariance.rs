@@ -6,10 +6,10 @@
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use super::cholesky::inverse;
-use super::normal_equations::{Layout, at, reduced_system};
+use super::normal_equations::{Layout, reduced_system};
 use super::options::BundleOptions;
 use crate::base::geometry::mean_point;
+use crate::base::least_squares::Pattern;
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::intrinsics::{Intrinsics, PARAMETERS};
 
@@ -31,7 +31,8 @@ pub(in super::super) fn covariance(
 ) -> Option<Covariance> {
     let layout = Layout::new(block);
     let priors = options.priors(means);
-    let mut system = reduced_system(block, &layout, &priors, 0.0);
+    let pattern = Pattern::dense(layout.unknowns());
+    let mut matrix = reduced_system(block, &layout, &pattern, &priors, 0.0).matrix;
     let centers: Vec<Point3<f64>> = (layout.photos.iter())
         .filter_map(|&p| block.photos[p].pose.as_ref())
         .map(|pose| pose.center)
@@ -41,7 +42,7 @@ pub(in super::super) fn covariance(
     let n = layout.unknowns();
     let size = centers.iter().enumerate().fold(0.0f64, |most, (slot, _)| {
         (3..6).fold(most, |most, k| {
-            most.max(system.matrix[at(6 * slot + k, 6 * slot + k)])
+            most.max(matrix[(6 * slot + k, 6 * slot + k)])
         })
     });
     let constraints: Vec<Vec<f64>> = free
@@ -51,13 +52,13 @@ pub(in super::super) fn covariance(
     for c in &constraints {
         for i in 0..n {
             if c[i] != 0.0 {
-                for j in 0..=i {
-                    system.matrix[at(i, j)] += size * c[i] * c[j];
+                for (value, other) in matrix.row_mut(i).iter_mut().zip(c) {
+                    *value += size * c[i] * other;
                 }
             }
         }
     }
-    let mut inverse = inverse(system.matrix, n)?;
+    let mut inverse = matrix.cholesky()?.inverse();
     // What the constraints themselves left of the free motions: N (N^T C C^T N)^-1 N^T.
     let gram = nalgebra::SMatrix::<f64, 7, 7>::from_fn(|i, j| {
         let inner = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
@@ -72,20 +73,19 @@ pub(in super::super) fn covariance(
             for i in 0..n {
                 let scaled = factor * of_p[i];
                 if scaled != 0.0 {
-                    for j in 0..=i {
-                        inverse[at(i, j)] -= scaled * of_q[j];
+                    for (value, other) in inverse.row_mut(i).iter_mut().zip(of_q) {
+                        *value -= scaled * other;
                     }
                 }
             }
         }
     }
-    let element = |i: usize, j: usize| inverse[at(i.max(j), i.min(j))];
-    let block3 = |start: usize| Matrix3::from_fn(|r, c| element(start + r, start + c));
+    let block3 = |start: usize| Matrix3::from_fn(|r, c| inverse[(start + r, start + c)]);
     let slots = 0..centers.len();
     let cameras = (0..block.cameras.len()).map(|camera| {
         let start = layout.of_camera(camera);
         std::array::from_fn(|i| match options.prior[i] > 0.0 {
-            true => element(start + i, start + i).max(0.0).sqrt(),
+            true => inverse[(start + i, start + i)].max(0.0).sqrt(),
             false => 0.0,
         })
     });

@@ -4,25 +4,23 @@
 //! ```text
 //! options               what is free, how long, and priors
 //! normal_equations      linearised observations; points eliminated by the Schur complement
-//! cholesky              the solution of the reduced system
-//! levenberg_marquardt   the steps
+//! steps                 where a step of all unknowns leads
 //! truncated             the cost of all observations, to compare blocks
 //! covariance            of the unknowns, in the datum of the projection centres
 //! ```
 //!
-//! Levenberg-Marquardt, Cauchy's loss. Points are divided into a fixed number of shards, whose sums
+//! Cauchy's loss. Points are divided into a fixed number of shards, whose sums
 //! are added in their order, so that threads never change a result.
 
-mod cholesky;
 mod covariance;
-mod levenberg_marquardt;
 mod normal_equations;
 mod options;
+mod steps;
 mod truncated;
 
 pub(super) use covariance::{Covariance, covariance};
-pub(super) use levenberg_marquardt::adjust;
 pub(super) use options::BundleOptions;
+pub(super) use steps::adjust;
 pub(super) use truncated::truncated_cost;
 
 #[cfg(test)]

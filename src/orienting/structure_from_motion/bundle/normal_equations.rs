@@ -8,13 +8,13 @@ use nalgebra::{Matrix2x3, Matrix2x5, Matrix2x6, Matrix3, Point3, SMatrix, Vector
 
 use super::options::Prior;
 use crate::base::execution::map;
-use crate::base::math;
+use crate::base::least_squares::{Envelope, Loss, Pattern};
 use crate::orienting::structure_from_motion::block::{Block, Observation, Track};
 use crate::orienting::structure_from_motion::intrinsics::PARAMETERS;
 use crate::orienting::structure_from_motion::resection::linearised;
 
-/// Residual, in standard deviations, from which an observation counts for less (Cauchy's loss).
-const LOSS: f64 = 2.0;
+/// An observation counts for less from two standard deviations on.
+pub(super) const LOSS: Loss = Loss::Cauchy(2.0);
 
 /// Parts of the points: more than threads, and each has a matrix of its own.
 const SHARDS: usize = 8;
@@ -68,9 +68,9 @@ impl Layout {
     }
 }
 
-/// The reduced system: its lower triangle row by row, and the right-hand side.
-pub(super) struct ReducedSystem {
-    pub matrix: Vec<f64>,
+/// The reduced system: its matrix, and the right-hand side.
+pub(super) struct ReducedSystem<'p> {
+    pub matrix: Envelope<'p>,
     pub right: Vec<f64>,
 }
 
@@ -98,7 +98,7 @@ fn rows(block: &Block, layout: &Layout, track: &Track) -> Vec<Row> {
         )?;
         let inverse = 1.0 / block.sigma_px(o);
         let square = residual.norm_squared() * inverse * inverse;
-        let scale = inverse / (1.0 + square / (LOSS * LOSS)).sqrt();
+        let scale = inverse * LOSS.weight(square).sqrt();
         Some(Row {
             slot: layout.slots[o.photo],
             camera: photo.camera,
@@ -124,7 +124,7 @@ fn point_block(rows: &[Row], damping: f64) -> Option<(Matrix3<f64>, Vector3<f64>
     Some((v.try_inverse()?, g))
 }
 
-/// Half the robust sum of squares, with the priors.
+/// The robust sum of squares, with the priors.
 pub(super) fn cost(block: &Block, layout: &Layout, priors: &[Prior]) -> f64 {
     let of_shard = |shard: &[usize]| -> f64 {
         let mut sum = 0.0;
@@ -133,7 +133,11 @@ pub(super) fn cost(block: &Block, layout: &Layout, priors: &[Prior]) -> f64 {
             let Some(point) = &track.point else { continue };
             for o in track.used() {
                 let r = block.residual(o, point);
-                sum += if r.is_finite() { loss(r) } else { BEHIND };
+                sum += if r.is_finite() {
+                    LOSS.cost(r * r)
+                } else {
+                    BEHIND
+                };
             }
         }
         sum
@@ -154,28 +158,23 @@ pub(super) fn cost(block: &Block, layout: &Layout, priors: &[Prior]) -> f64 {
     total
 }
 
-/// Cauchy's loss of a residual in standard deviations.
-pub(super) fn loss(r: f64) -> f64 {
-    LOSS * LOSS * math::ln(1.0 + r * r / (LOSS * LOSS))
-}
-
 /// The reduced system of a block; held parameters keep a step of zero.
-pub(super) fn reduced_system(
+pub(super) fn reduced_system<'p>(
     block: &Block,
     layout: &Layout,
+    pattern: &'p Pattern,
     priors: &[Prior],
     damping: f64,
-) -> ReducedSystem {
-    let n = layout.unknowns();
+) -> ReducedSystem<'p> {
     let parts = map(&layout.shards(), |_, shard| {
-        let mut part = Part::new(n);
+        let mut part = Part::new(pattern);
         for &track in *shard {
             let rows = rows(block, layout, &block.tracks[track]);
             part.add(layout, &rows, damping);
         }
         part
     });
-    let mut sum = Part::new(n);
+    let mut sum = Part::new(pattern);
     for part in parts {
         sum.add_part(&part);
     }
@@ -188,7 +187,7 @@ pub(super) fn reduced_system(
         for (i, ((value, mean), sigma)) in pairs.zip(prior.sigma).enumerate() {
             if sigma > 0.0 {
                 let weight = 1.0 / (sigma * sigma);
-                sum.matrix[at(start + i, start + i)] += weight;
+                sum.matrix[(start + i, start + i)] += weight;
                 sum.diagonal[start + i] += weight;
                 sum.right[start + i] -= weight * (value - mean);
             } else {
@@ -196,8 +195,8 @@ pub(super) fn reduced_system(
             }
         }
     }
-    for i in 0..n {
-        sum.matrix[at(i, i)] += damping * sum.diagonal[i];
+    for (i, diagonal) in sum.diagonal.iter().enumerate() {
+        sum.matrix[(i, i)] += damping * diagonal;
     }
     ReducedSystem {
         matrix: sum.matrix,
@@ -205,32 +204,26 @@ pub(super) fn reduced_system(
     }
 }
 
-/// Where an element of the lower triangle stands; row >= column.
-#[inline]
-pub(super) fn at(row: usize, column: usize) -> usize {
-    row * (row + 1) / 2 + column
-}
-
 /// The sum over some points.
-struct Part {
-    matrix: Vec<f64>,
+struct Part<'p> {
+    matrix: Envelope<'p>,
     right: Vec<f64>,
     /// Of A^T A alone, which damping multiplies.
     diagonal: Vec<f64>,
 }
 
-impl Part {
-    fn new(n: usize) -> Self {
+impl<'p> Part<'p> {
+    fn new(pattern: &'p Pattern) -> Self {
         Self {
-            matrix: vec![0.0; n * (n + 1) / 2],
-            right: vec![0.0; n],
-            diagonal: vec![0.0; n],
+            matrix: pattern.zeros(),
+            right: vec![0.0; pattern.len()],
+            diagonal: vec![0.0; pattern.len()],
         }
     }
 
     fn add_part(&mut self, other: &Self) {
+        self.matrix.add(&other.matrix);
         for (mine, theirs) in [
-            (&mut self.matrix, &other.matrix),
             (&mut self.right, &other.right),
             (&mut self.diagonal, &other.diagonal),
         ] {
@@ -242,32 +235,12 @@ impl Part {
 
     /// Makes an unknown stay what it is.
     fn hold(&mut self, i: usize) {
-        let n = self.right.len();
-        for j in 0..n {
-            self.matrix[at(i.max(j), i.min(j))] = 0.0;
+        for j in 0..self.right.len() {
+            self.matrix[(i, j)] = 0.0;
         }
-        self.matrix[at(i, i)] = 1.0;
+        self.matrix[(i, i)] = 1.0;
         self.right[i] = 0.0;
         self.diagonal[i] = 0.0;
-    }
-
-    /// Adds a block whose rows and columns start at these unknowns, where it lies below or on the
-    /// diagonal.
-    #[inline]
-    fn add_block<const R: usize, const C: usize>(
-        &mut self,
-        row: usize,
-        column: usize,
-        block: &SMatrix<f64, R, C>,
-    ) {
-        for r in 0..R {
-            let start = at(row + r, 0) + column;
-            let width = if row == column { r + 1 } else { C };
-            let into = &mut self.matrix[start..start + width];
-            for (c, value) in into.iter_mut().enumerate() {
-                *value += block[(r, c)];
-            }
-        }
     }
 
     fn add(&mut self, layout: &Layout, rows: &[Row], damping: f64) {
@@ -297,18 +270,20 @@ impl Part {
                 self.diagonal[pose + k] += own[(k, k)];
             }
             let weighted = of_photos[i] * inverse;
-            self.add_block(pose, pose, &(own - weighted * of_photos[i].transpose()));
+            self.matrix
+                .add_block(pose, pose, &(own - weighted * of_photos[i].transpose()));
             // Photographs of a track rise, so earlier ones stand to the left.
             for (earlier, w) in rows[..i].iter().zip(&of_photos) {
-                self.add_block(pose, 6 * earlier.slot, &-(weighted * w.transpose()));
+                self.matrix
+                    .add_block(pose, 6 * earlier.slot, &-(weighted * w.transpose()));
             }
             let crossed = row.by_camera.transpose() * row.by_pose;
-            self.add_block(camera, pose, &crossed);
+            self.matrix.add_block(camera, pose, &crossed);
             let own = row.by_camera.transpose() * row.by_camera;
             for k in 0..PARAMETERS {
                 self.diagonal[camera + k] += own[(k, k)];
             }
-            self.add_block(camera, camera, &own);
+            self.matrix.add_block(camera, camera, &own);
             let right = weighted * gradient - row.by_pose.transpose() * row.residual;
             for k in 0..6 {
                 self.right[pose + k] += right[k];
@@ -322,11 +297,13 @@ impl Part {
             let start = layout.of_camera(*camera);
             let weighted = w * inverse;
             for (row, of_photo) in rows.iter().zip(&of_photos) {
-                self.add_block(start, 6 * row.slot, &-(weighted * of_photo.transpose()));
+                self.matrix
+                    .add_block(start, 6 * row.slot, &-(weighted * of_photo.transpose()));
             }
             for (earlier, other) in &of_cameras[..=c] {
                 let block = -(weighted * other.transpose());
-                self.add_block(start, layout.of_camera(*earlier), &block);
+                self.matrix
+                    .add_block(start, layout.of_camera(*earlier), &block);
             }
             let right = weighted * gradient;
             for k in 0..PARAMETERS {

@@ -1,7 +1,7 @@
 //! The cost of all observations of a block, used or not, which compares blocks that differ in their
 //! outliers.
 
-use super::normal_equations::loss;
+use super::normal_equations::LOSS;
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::triangulation::MOST_SIGMAS;
 
@@ -14,7 +14,8 @@ pub(in super::super) fn truncated_cost(block: &Block, factor: f64) -> f64 {
         for o in &track.observations {
             if block.photos[o.photo].pose.is_some() {
                 let residual = (track.point).map_or(f64::INFINITY, |p| block.residual(o, &p));
-                sum += loss((factor * residual).min(MOST_SIGMAS));
+                let residual = (factor * residual).min(MOST_SIGMAS);
+                sum += LOSS.cost(residual * residual);
             }
         }
     }

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::gcp_list::{ControlPoint, GroundControl};
 use super::residual::ControlResidual;
+use crate::base::least_squares::{Loss, NormalEquations};
 use crate::base::math;
 use crate::orienting::structure_from_motion::block::{Block, Observation};
 use crate::orienting::structure_from_motion::frame::{FrameBasis, spread};
@@ -32,7 +33,7 @@ const SAMPLES: usize = 300;
 const ROUNDS: usize = 20;
 
 /// Normalised residuals at which Cauchy's loss of a point begins to give way.
-const LOSS: f64 = 2.0;
+const LOSS: Loss = Loss::Cauchy(2.0);
 
 /// Median length of a residual of three normal components, in their standard deviation.
 const MAXWELL_MEDIAN: f64 = 1.538_17;
@@ -157,21 +158,21 @@ fn looked_for(
 /// Where the rays of marks meet.
 fn seen_in(block: &Block, observations: &[Observation]) -> Option<Seen> {
     let (place, agreeing) = triangulate(block, observations)?;
-    let mut information = Matrix3::zeros();
+    let mut equations = NormalEquations::default();
     for &i in &agreeing {
         let o = &observations[i];
         let photo = &block.photos[o.photo];
-        let (_, _, _, by_point) = linearised(
+        let (residual, _, _, by_point) = linearised(
             photo.pose.as_ref()?,
             block.intrinsics(o.photo),
             &place,
             &block.pixel(o),
         )?;
-        information += by_point.transpose() * by_point / (MARK_SIGMA_PX * MARK_SIGMA_PX);
+        equations.add_weighted(&residual, &by_point, 1.0 / (MARK_SIGMA_PX * MARK_SIGMA_PX));
     }
     Some(Seen {
         place,
-        covariance: information.try_inverse()?,
+        covariance: equations.inverse()?,
         agreeing,
     })
 }
@@ -200,8 +201,7 @@ fn robust_similarity(
     };
     let loss = |s: &Similarity| -> f64 {
         let each = squares(s).into_iter();
-        each.map(|square| math::ln(1.0 + square / (LOSS * LOSS)))
-            .sum()
+        each.map(|square| LOSS.cost(square)).sum()
     };
     let mut best = Similarity::between(from, to, &vec![1.0; n])?;
     let mut least = loss(&best);
@@ -221,7 +221,7 @@ fn robust_similarity(
     }
     for _ in 0..ROUNDS {
         let weights: Vec<f64> = (squares(&best).iter().zip(sigmas(&best)))
-            .map(|(square, sigma)| 1.0 / (sigma * sigma * (1.0 + square / (LOSS * LOSS))))
+            .map(|(square, sigma)| LOSS.weight(*square) / (sigma * sigma))
             .collect();
         best = Similarity::between(from, to, &weights)?;
     }

@@ -1,15 +1,13 @@
 //! Lengths measured in photographs: two places, each from where a person marks it.
 
-use nalgebra::{Matrix3, Point2, Point3, Vector3};
+use nalgebra::{Matrix3, Point2, Point3};
 use serde::Serialize;
 
 use super::sparse_model::SparseModel;
+use crate::base::least_squares::{Loss, NormalEquations, Stop, fit};
 use crate::orienting::structure_from_motion::ground_control::MARK_SIGMA_PX;
 use crate::orienting::structure_from_motion::resection::linearised;
 use crate::orienting::structure_from_motion::triangulation::{LEAST_ANGLE, angle, nearest_point};
-
-/// Steps of Gauss and Newton towards a place.
-const STEPS: usize = 10;
 
 /// A length between two places in the frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -102,19 +100,18 @@ impl SparseModel {
         if widest < LEAST_ANGLE {
             return Err(NotMeasured::NoMeeting);
         }
-        let mut point = nearest_point(rays).ok_or(NotMeasured::NoMeeting)?;
-        let mut covariance = Matrix3::zeros();
-        for _ in 0..STEPS {
-            let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        let start = nearest_point(rays).ok_or(NotMeasured::NoMeeting)?;
+        let equations = |point: &Point3<f64>| {
+            let mut equations = NormalEquations::default();
             for (pose, camera, pixel) in &seen {
-                let (residual, _, _, by_point) =
-                    linearised(pose, camera, &point, pixel).ok_or(NotMeasured::NoMeeting)?;
-                normal += by_point.transpose() * by_point;
-                right += by_point.transpose() * residual;
+                let (residual, _, _, by_point) = linearised(pose, camera, point, pixel)?;
+                equations.add(&residual, &by_point, Loss::Squares);
             }
-            covariance = normal.try_inverse().ok_or(NotMeasured::NoMeeting)?;
-            point -= covariance * right;
-        }
+            Some(equations)
+        };
+        let (point, equations) = fit(start, equations, |at, step| at + step, Stop::default())
+            .ok_or(NotMeasured::NoMeeting)?;
+        let covariance = equations.inverse().ok_or(NotMeasured::NoMeeting)?;
         let squares: Option<Vec<f64>> = (seen.iter())
             .map(|(pose, camera, pixel)| {
                 let (residual, ..) = linearised(pose, camera, &point, pixel)?;

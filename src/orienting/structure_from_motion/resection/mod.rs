@@ -2,13 +2,14 @@
 
 mod p3p;
 
-use nalgebra::{Matrix2x6, Matrix6, Point2, Point3, Vector2, Vector6};
+use nalgebra::{Matrix2x6, Point2, Point3, Vector2, Vector6};
 
 use super::block::Pose;
 use super::intrinsics::Intrinsics;
 use super::random::Random;
 use super::robust::{Estimate, Estimator, Likelihood, estimate};
 use crate::base::geometry::rotation_from_axis_angle;
+use crate::base::least_squares::{Equations, NormalEquations};
 use p3p::poses_of_three;
 
 /// Most samples of three points.
@@ -58,17 +59,15 @@ impl Estimator for ResectionProblem<'_> {
 
     /// A step of Gauss and Newton.
     fn refined(&self, pose: &Pose, weights: &[f64]) -> Option<Pose> {
-        let (mut normal, mut right) = (Matrix6::<f64>::zeros(), Vector6::<f64>::zeros());
+        let mut equations = NormalEquations::default();
         for ((world, pixel), &weight) in self.points.iter().zip(weights) {
             if weight < 1e-3 {
                 continue;
             }
             let (residual, by_pose, _, _) = linearised(pose, self.intrinsics, world, pixel)?;
-            normal += by_pose.transpose() * by_pose * weight;
-            right -= by_pose.transpose() * residual * weight;
+            equations.add_weighted(&residual, &by_pose, weight);
         }
-        let step = normal.cholesky()?.solve(&right);
-        Some(moved(pose, &step))
+        Some(moved(pose, &equations.step(0.0)?))
     }
 }
 
@@ -124,6 +123,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
+    use crate::base::least_squares::worst_derivative;
 
     type Setting = (Pose, Intrinsics, Vec<(Point3<f64>, Point2<f64>)>);
 
@@ -176,28 +176,21 @@ mod tests {
         let (world, pixel) = points[3];
         let (_, by_pose, by_parameters, by_point) =
             linearised(&pose, &intrinsics, &world, &pixel).unwrap();
-        let h = 1e-6;
         let residual = |pose: &Pose, camera: &Intrinsics, world: &Point3<f64>| {
             linearised(pose, camera, world, &pixel).unwrap().0
         };
-        for i in 0..6 {
-            let at = |by: f64| residual(&moved(&pose, &Vector6::ith(i, by)), &intrinsics, &world);
-            let d = (at(h) - at(-h)) / (2.0 * h);
-            assert!((d - by_pose.column(i)).norm() < 1e-3, "{i}");
-        }
-        for i in 0..5 {
-            let at = |by: f64| {
-                let mut p = intrinsics.parameters();
-                p[i] += by;
-                residual(&pose, &intrinsics.with_parameters(p), &world)
-            };
-            let d = (at(h) - at(-h)) / (2.0 * h);
-            assert!((d - by_parameters.column(i)).norm() < 1e-4, "{i}");
-        }
-        for i in 0..3 {
-            let at = |by: f64| residual(&pose, &intrinsics, &(world + Vector3::ith(i, by)));
-            let d = (at(h) - at(-h)) / (2.0 * h);
-            assert!((d - by_point.column(i)).norm() < 1e-4, "{i}");
-        }
+        let off = worst_derivative(&by_pose, |step| {
+            residual(&moved(&pose, step), &intrinsics, &world)
+        });
+        assert!(off < 1e-6, "{off}");
+        let off = worst_derivative(&by_parameters, |step| {
+            let parameters = std::array::from_fn(|i| intrinsics.parameters()[i] + step[i]);
+            residual(&pose, &intrinsics.with_parameters(parameters), &world)
+        });
+        assert!(off < 1e-6, "{off}");
+        let off = worst_derivative(&by_point, |step| {
+            residual(&pose, &intrinsics, &(world + step))
+        });
+        assert!(off < 1e-6, "{off}");
     }
 }

@@ -1,10 +1,11 @@
 //! The robust essential matrix of a pair, and the relative pose in it.
 
-use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, Rotation3, SMatrix, Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::five_point::essential_matrices;
 use crate::base::geometry::rotation_from_axis_angle;
+use crate::base::least_squares::{Equations, NormalEquations};
 use crate::base::math;
 use crate::orienting::structure_from_motion::random::Random;
 use crate::orienting::structure_from_motion::robust::Estimator;
@@ -93,19 +94,18 @@ impl Estimator for EssentialProblem<'_> {
             b2.cross_matrix() * r,
         ];
         let e = pose.essential();
-        let mut normal = SMatrix::<f64, 5, 5>::zeros();
-        let mut right = SVector::<f64, 5>::zeros();
+        let mut equations = NormalEquations::default();
         for (rays, &weight) in self.rays.iter().zip(weights) {
             if weight < 1e-3 {
                 continue;
             }
             let (residual, length) = Self::sampson(&e, rays);
-            let row =
-                SVector::<f64, 5>::from_fn(|i, _| rays.1.dot(&(derivatives[i] * rays.0)) / length);
-            normal += row * row.transpose() * weight;
-            right -= row * (weight * residual);
+            let row = SMatrix::<f64, 1, 5>::from_fn(|_, i| {
+                rays.1.dot(&(derivatives[i] * rays.0)) / length
+            });
+            equations.add_weighted(&Vector1::new(residual), &row, weight);
         }
-        let step = normal.cholesky()?.solve(&right);
+        let step = equations.step(0.0)?;
         let turn = rotation_from_axis_angle(&Vector3::new(step[0], step[1], step[2]));
         let moved = RelativePose {
             rotation: pose.rotation * turn,

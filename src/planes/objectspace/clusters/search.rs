@@ -6,6 +6,7 @@ use nalgebra::{Matrix2, Point2, Vector2};
 use super::cluster_plane::{ClusterAxes, PlaneRay, overlap};
 use crate::base::geometry::covered;
 use crate::base::ids::ViewId;
+use crate::base::least_squares::Loss;
 use crate::base::params::ClusterParams;
 use crate::orienting::scene::Scene;
 use crate::planes::objectspace::image_lines::ImageLine;
@@ -178,7 +179,7 @@ impl ClusterSearch<'_> {
         let (mut a, mut b) = (Matrix2::zeros(), Vector2::zeros());
         for (k, s, r2) in members {
             let ray = &self.rays[*k];
-            let weight = (s[1] - s[0]) / (1.0 + r2 / (SIGMA_PX * SIGMA_PX));
+            let weight = (s[1] - s[0]) * Loss::Cauchy(SIGMA_PX).weight(*r2);
             a += ray.normal * ray.normal.transpose() * weight;
             b += ray.normal * (ray.offset * weight);
         }

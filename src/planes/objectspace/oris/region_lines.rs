@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::color::ColorImage;
 use super::segmentation::Segmentation;
 use crate::base::geometry::Segment2;
+use crate::base::least_squares::Loss;
 use crate::base::math::{hypot, median};
 use crate::base::params::OrisParams;
 use crate::lines::lines2d::{ImageSegment, SegmentKind};
@@ -172,14 +173,14 @@ fn fit(vector: &Segment2, crest: &[[f64; 2]]) -> Option<(Segment2, f64)> {
     for _ in 0..ROUNDS {
         let (mut w, mut wt, mut wo, mut wtt, mut wto, mut wrr) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         for [t, o] in crest {
-            let r = (o - base - slope * t) / SCALE_PX;
-            let weight = 1.0 / (1.0 + r * r);
+            let r = o - base - slope * t;
+            let weight = Loss::Cauchy(SCALE_PX).weight(r * r);
             w += weight;
             wt += weight * t;
             wo += weight * o;
             wtt += weight * t * t;
             wto += weight * t * o;
-            wrr += weight * (r * SCALE_PX) * (r * SCALE_PX);
+            wrr += weight * r * r;
         }
         rms = (wrr / w).sqrt();
         let spread = wtt - wt * wt / w;

@@ -1,4 +1,4 @@
-//! The least-squares adjustment of a wireframe (Levenberg-Marquardt).
+//! The least-squares adjustment of a wireframe.
 //!
 //! ```text
 //! cost(x) = sum rho(|W (offset, angle)|^2)      measured edges against the images of their sides
@@ -13,12 +13,13 @@
 use nalgebra::{DVector, Point2};
 
 use super::edge_observations::EdgeObservation;
-use super::envelope::{Envelope, Pattern};
 use super::relations::Relation;
 use super::statement::Statement;
 use super::wireframe::{Meet, Straight, Wireframe, WireframeState};
 use crate::base::geometry::Segment2;
-use crate::base::math;
+use crate::base::least_squares::{
+    Envelope, EnvelopeEquations, Loss, Pattern, Stop, fit, variance_of_unit_weight,
+};
 use crate::base::params::RefineParams;
 use crate::orienting::scene::Scene;
 
@@ -29,8 +30,6 @@ const EXACT_M: f64 = 2e-4;
 const STEP: f64 = 1e-4;
 /// Weight of the belief that the covariances are right, in residuals.
 const SCATTER_PRIOR: f64 = 10.0;
-/// Most iterations.
-const MAX_ITERATIONS: usize = 20;
 
 /// One summand of the cost.
 #[derive(Clone, Debug)]
@@ -65,6 +64,8 @@ pub(super) enum Term {
     Relation(Relation, f64),
     /// What somebody states of it, with its standard deviation, metres.
     Stated(Statement, f64),
+    /// What holds unless more speaks against it: robust.
+    Believed(Box<Self>),
 }
 
 /// A least-squares problem.
@@ -85,21 +86,15 @@ pub(super) struct Solution<'p> {
     pub state: WireframeState,
     /// Cholesky factor of the normal matrix.
     factor: Envelope<'p>,
-    /// By how much the residuals scatter more than they should.
-    scatter: f64,
+    /// Variance of unit weight.
+    variance: f64,
 }
 
 impl Solution<'_> {
     /// The covariance of the state times a vector.
     pub(super) fn spread(&self, gradient: &DVector<f64>) -> DVector<f64> {
-        self.factor.solve(gradient) * self.scatter
+        DVector::from_vec(self.factor.solve(gradient.as_slice())) * self.variance
     }
-}
-
-struct NormalEquations<'p> {
-    matrix: Envelope<'p>,
-    gradient: DVector<f64>,
-    cost: f64,
 }
 
 impl<'a> AdjustmentProblem<'a> {
@@ -141,28 +136,11 @@ impl<'a> AdjustmentProblem<'a> {
         start: &WireframeState,
         pattern: &'p Pattern,
     ) -> Option<Solution<'p>> {
-        let mut state = start.clone();
-        let mut normal = self.normal(&state, pattern)?;
-        let mut damping = 1e-6;
-        for _ in 0..MAX_ITERATIONS {
-            let factor = normal.matrix.damped(1.0 + damping).cholesky()?;
-            let moved = &state - factor.solve(&normal.gradient);
-            match self.normal(&moved, pattern) {
-                Some(next) if next.cost <= normal.cost => {
-                    let gain = normal.cost - next.cost;
-                    (state, normal) = (moved, next);
-                    damping = (damping * 0.1).max(1e-12);
-                    if gain <= 1e-4 * (1.0 + 1e-3 * normal.cost) {
-                        break;
-                    }
-                }
-                _ => damping *= 10.0,
-            }
-            if damping > 1e6 {
-                break;
-            }
-        }
-        self.solution(state, normal)
+        let equations = |state: &WireframeState| self.equations(state, pattern);
+        let moved =
+            |state: &WireframeState, step: &Vec<f64>| state + DVector::from_column_slice(step);
+        let (state, equations) = fit(start.clone(), equations, moved, Stop::default())?;
+        self.solution(state, equations)
     }
 
     /// A state as it is, with how certain its residuals make it; `None` when the normal equations
@@ -172,79 +150,62 @@ impl<'a> AdjustmentProblem<'a> {
         state: &WireframeState,
         pattern: &'p Pattern,
     ) -> Option<Solution<'p>> {
-        self.solution(state.clone(), self.normal(state, pattern)?)
+        self.solution(state.clone(), self.equations(state, pattern)?)
     }
 
     fn solution<'p>(
         &self,
         state: WireframeState,
-        normal: NormalEquations<'p>,
+        equations: EnvelopeEquations<'p>,
     ) -> Option<Solution<'p>> {
-        // Residuals that scatter more than they should make the solution less certain.
         let redundancy = (2 * self.observations()) as f64;
-        let scatter = ((normal.cost + SCATTER_PRIOR) / (redundancy + SCATTER_PRIOR)).max(1.0);
-        let factor = normal.matrix.cholesky()?;
         Some(Solution {
             state,
-            factor,
-            scatter,
+            variance: variance_of_unit_weight(equations.cost, redundancy, SCATTER_PRIOR),
+            factor: equations.matrix.cholesky()?,
         })
     }
 
-    /// Number of measured edges.
+    /// Number of what is measured or believed.
     pub(super) fn observations(&self) -> usize {
-        let observation = |t: &&Term| matches!(t, Term::Edge(_));
+        let observation = |t: &&Term| matches!(t, Term::Edge(_) | Term::Believed(_));
         self.terms.iter().filter(observation).count()
     }
 
     /// The normal equations at a state, with robust weights; `None` where a side is behind a
     /// camera.
-    fn normal<'p>(
+    fn equations<'p>(
         &self,
         state: &WireframeState,
         pattern: &'p Pattern,
-    ) -> Option<NormalEquations<'p>> {
-        let mut normal = NormalEquations {
-            matrix: pattern.zeros(),
-            gradient: DVector::zeros(state.len()),
-            cost: 0.0,
-        };
+    ) -> Option<EnvelopeEquations<'p>> {
+        let mut equations = EnvelopeEquations::new(pattern);
         let mut at = state.clone();
         for term in &self.terms {
-            let [r0, r1] = self.residual(term, state)?;
-            let square = r0 * r0 + r1 * r1;
-            let k2 = self.loss * self.loss;
-            let weight = if matches!(term, Term::Edge(_)) {
-                normal.cost += k2 * math::ln(1.0 + square / k2);
-                1.0 / (1.0 + square / k2)
-            } else {
-                normal.cost += square;
-                1.0
+            let loss = match term {
+                Term::Edge(_) | Term::Believed(_) => Loss::Cauchy(self.loss),
+                _ => Loss::Squares,
             };
             let unknowns = self.unknowns(term);
             let mut rows = [[0.0f64; MAX_UNKNOWNS]; 2];
             for (k, &u) in unknowns.iter().enumerate() {
                 at[u] = state[u] + STEP;
-                let [a0, a1] = self.residual(term, &at)?;
+                let above = self.residual(term, &at)?;
                 at[u] = state[u] - STEP;
-                let [b0, b1] = self.residual(term, &at)?;
+                let below = self.residual(term, &at)?;
                 at[u] = state[u];
-                rows[0][k] = (a0 - b0) / (2.0 * STEP);
-                rows[1][k] = (a1 - b1) / (2.0 * STEP);
-            }
-            for (i, &u) in unknowns.iter().enumerate() {
-                normal.gradient[u] += weight * (rows[0][i] * r0 + rows[1][i] * r1);
-                for (j, &v) in unknowns[..=i].iter().enumerate() {
-                    let product = rows[0][i] * rows[0][j] + rows[1][i] * rows[1][j];
-                    normal.matrix.add(u, v, weight * product);
+                for (row, (a, b)) in rows.iter_mut().zip(above.into_iter().zip(below)) {
+                    row[k] = (a - b) / (2.0 * STEP);
                 }
             }
+            let rows = [&rows[0][..], &rows[1]];
+            equations.add(self.residual(term, state)?, &unknowns, rows, loss);
         }
-        Some(normal)
+        Some(equations)
     }
 
     /// Weighted residuals of a term; the second is 0 where there is one only.
-    pub(super) fn residual(&self, term: &Term, state: &WireframeState) -> Option<[f64; 2]> {
+    fn residual(&self, term: &Term, state: &WireframeState) -> Option<[f64; 2]> {
         let w = self.wireframe;
         Some(match term {
             Term::Edge(s) => {
@@ -280,6 +241,7 @@ impl<'a> AdjustmentProblem<'a> {
             }
             Term::Relation(relation, sigma) => [relation.value(w, state) / sigma, 0.0],
             Term::Stated(statement, sigma) => statement.value(w, state).map(|r| r / sigma),
+            Term::Believed(term) => self.residual(term, state)?,
         })
     }
 
@@ -330,6 +292,7 @@ impl<'a> AdjustmentProblem<'a> {
             }
             Term::Relation(relation, _) => relation.unknowns(w),
             Term::Stated(statement, _) => statement.unknowns(w),
+            Term::Believed(term) => self.unknowns(term),
         }
     }
 }

@@ -8,8 +8,7 @@
 //! ```
 //!
 //! rho is Cauchy's: what the statements contradict is a mistake of the model, which it gives up,
-//! and what they do not touch stays. Earlier statements are believed in the same way. It is solved
-//! by weights, in rounds.
+//! and what they do not touch stays. Earlier statements are believed in the same way.
 
 use super::adjust::{AdjustmentProblem, Term};
 use super::relations::propose;
@@ -20,8 +19,6 @@ use crate::base::params::RefineParams;
 use crate::orienting::scene::Scene;
 use crate::roofs::model::{Facet, SideSupport};
 
-/// Rounds of weights: the later ones change millimetres.
-const ROUNDS: usize = 12;
 /// Standard deviation of a corner or a height that nothing states, metres. Assumption.
 const UNKNOWN_SIGMA_M: f64 = 0.1;
 /// No corner is known better than that, metres: what is stated by hand weighs more.
@@ -55,26 +52,17 @@ pub fn adjust_to_statements(
     believed.extend(stated(earlier));
     let exact = (wireframe.meets.iter().map(|m| Term::Meet(*m)))
         .chain(wireframe.straights.iter().map(|s| Term::Straight(*s)));
-    let mut problem = AdjustmentProblem {
+    let believed = believed
+        .into_iter()
+        .map(|term| Term::Believed(Box::new(term)));
+    let problem = AdjustmentProblem {
         scene,
         wireframe: &wireframe,
-        terms: (believed.iter().cloned())
-            .chain(stated(statements))
-            .chain(exact)
-            .collect(),
+        terms: believed.chain(stated(statements)).chain(exact).collect(),
         loss: params.loss_sigmas,
     };
     let pattern = problem.pattern();
-    let mut state = start;
-    for _ in 0..ROUNDS {
-        state = problem.solve(&state, &pattern)?.state;
-        for (i, term) in believed.iter().enumerate() {
-            let [r0, r1] = problem.residual(term, &state)?;
-            let square = (r0 * r0 + r1 * r1) / (params.loss_sigmas * params.loss_sigmas);
-            problem.terms[i] = term.with_sigma_times((1.0 + square).sqrt());
-        }
-    }
-    let solution = problem.solve(&state, &pattern)?;
+    let solution = problem.solve(&start, &pattern)?;
     let uncertainties = uncertainty_on(&problem, &solution, &supports);
     let adjusted = wireframe.facets(&solution.state, facets);
     let known = adjusted.into_iter().zip(uncertainties);
@@ -141,19 +129,4 @@ fn believed(
     let holding = holding.filter(|relation| relation.value(w, state).abs() < HOLDS_M);
     terms.extend(holding.map(|relation| Term::Relation(relation, params.relation_sigma_m)));
     terms
-}
-
-impl Term {
-    /// The same believed less; exact terms stay.
-    fn with_sigma_times(&self, factor: f64) -> Self {
-        let mut term = self.clone();
-        match &mut term {
-            Self::Position { sigma_m, .. }
-            | Self::Height { sigma_m, .. }
-            | Self::Relation(_, sigma_m)
-            | Self::Stated(_, sigma_m) => *sigma_m *= factor,
-            Self::Edge(_) | Self::Meet(_) | Self::Straight(_) => {}
-        }
-        term
-    }
 }

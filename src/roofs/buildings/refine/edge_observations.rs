@@ -15,7 +15,7 @@ use crate::base::geometry::{Segment2, Segment3, covered};
 use crate::base::ids::ViewId;
 use crate::base::params::{RefineParams, RoofParams};
 use crate::lines::lines2d::{SegmentKind, measure_edge};
-use crate::lines::lines3d::Line3d;
+use crate::lines::lines3d::{Line3d, edge_whitening};
 use crate::orienting::scene::Scene;
 use crate::photographs::raster::Channel;
 use crate::roofs::model::Occluders;
@@ -213,23 +213,12 @@ impl SideProfiles {
                 side,
                 view,
                 segment: edge.segment,
-                whitening: whitening(&edge.covariance, edge.segment.length(), params.floor_px),
+                whitening: edge_whitening(&edge.covariance, edge.segment.length(), params.floor_px),
             })
         };
         let found: Vec<EdgeObservation> = self.views.iter().filter_map(of_view).collect();
         if found.len() < 2 { Vec::new() } else { found }
     }
-}
-
-/// Whitens (offset, angle) of an edge of `length` px with an error of `floor` px at both ends that
-/// its covariance does not know.
-fn whitening(covariance: &Matrix2<f64>, length: f64, floor: f64) -> Matrix2<f64> {
-    let mut c = *covariance;
-    c[(0, 0)] += floor * floor;
-    c[(1, 1)] += 4.0 * floor * floor / (length * length);
-    c.cholesky()
-        .and_then(|l| l.l().try_inverse())
-        .unwrap_or_else(|| Matrix2::new(1.0 / floor, 0.0, 0.0, 0.5 * length / floor))
 }
 
 #[cfg(test)]

@@ -7,7 +7,6 @@
 //! wireframe          vertices, planes and sides of a building
 //! profiles           rows of grey values along a side, from inside to outside
 //! edge_observations  sides -> image edges in every view
-//! envelope           sparse Cholesky factorisation
 //! relations          parallel, perpendicular, horizontal, symmetric: proposals
 //! adjust             least squares of a wireframe, first without relations
 //! relation_tests     relations that the covariance allows, for the second adjustment
@@ -31,7 +30,6 @@ mod acceptance;
 mod adjust;
 mod by_hand;
 mod edge_observations;
-mod envelope;
 #[cfg(test)]
 pub(super) mod fixture;
 mod gaps;
