@@ -35,10 +35,12 @@ ADJECTIVES = set(
     FINEST FLAT FIRST FOLDED FULL FURTHEST GROSS GUESSED HIGHEST HOLDS IN INDEPENDENT INSIDE JOINED KEPT LARGE
     LARGEST LAST LEAST LEVEL LIKELY LONG LONGEST LOWEST MATCHED MAX MEETING MIN MIXED MOST NARROWEST NEAR NEARER
     NEAREST NEARLY NEW NEXT NO NOBODY OCCLUDED OF OFF ON ONE OUTSIDE OVER OWN PARALLEL PLANAR QUICK REDUCE REDUCED
-    ROOFED ROUNDED ROUNDS SAME SATURATED SEARCHED SHORT SHORTEST SHOWN SIGNIFICANT SMALL SMALLEST SNAP SPLIT SQUARE
-    STANDS STAYS STEEPEST STEP STEPS STRAIGHT SURE SYMMETRIC TALLEST TILTED TO TRIED TURNS TWO UNCHANGED UNDECIDED
+    ROOFED ROUNDED SAME SATURATED SEARCHED SHORT SHORTEST SHOWN SIGNIFICANT SMALL SMALLEST SNAP SPLIT SQUARE
+    STANDS STAYS STEEPEST STRAIGHT SURE SYMMETRIC TALLEST TILTED TO TRIED TWO UNCHANGED UNDECIDED
     UNIQUE UNSEEN WEAK WIDEST WITH WITHIN WRITTEN""".split()
 )
+# Nouns that alone do not say of what.
+COUNTERS = {"ROUND", "ROUNDS", "STEP", "STEPS", "TURNS", "TABLE", "SCALE"}
 
 
 # --- Rust -------------------------------------------------------------------------------------------------
@@ -143,24 +145,25 @@ def functions(source):
 
 
 def constants(source):
-    """Line, name and whether there is a comment above, beside or within, of each numeric constant.
+    """Line, name and whether there is a comment above or beside it, of each numeric constant.
 
-    Constants without a blank line between them share the comment above the first.
+    Constants that follow each other without a line between them share the comment above the first.
     """
     text = source.text.split("\n")
     explained = False
     for i, line in enumerate(source.lines):
         found = CONSTANT.match(line)
-        if re.match(r"\s*//", text[i]):
+        if re.match(r"\s*//[^!]", text[i]):
             explained = True
         elif found:
-            yield i + 1, found[1], explained or "//" in text[i] or "//" in text[min(i + 1, len(text) - 1)].split("const")[0]
-        elif not re.match(r"\s*#\[", text[i]) and not re.match(r"^\s+[^\s].*;$", line):
+            yield i + 1, found[1], explained or "//" in text[i]
+        elif not re.match(r"\s*(?:#\[|(?:pub(?:\([^)]*\))? )?const )", text[i]):
             explained = False
 
 
 def is_adjective(name):
-    return all(word in UNITS or word in ADJECTIVES for word in name.split("_"))
+    words = [word for word in name.split("_") if word not in UNITS]
+    return all(word in ADJECTIVES for word in words) or (len(words) == 1 and words[0] in COUNTERS)
 
 
 def deciding(sources):
@@ -241,7 +244,7 @@ def count():
             [f"{source.name}:{at}: {name}" for source, at, name, explained in found if not explained],
         ),
         "constants_without_noun": (
-            "those of whose name only adjectives and units are words (ADJECTIVES)",
+            "those whose name says no quantity (ADJECTIVES and units alone, or COUNTERS)",
             [f"{source.name}:{at}: {name}" for source, at, name, _ in found if is_adjective(name)],
         ),
         "deciding_constants": (
