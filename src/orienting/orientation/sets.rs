@@ -240,8 +240,8 @@ fn add_files_beside(inputs: &[InputFile], kinds: &[FileKind], set: &mut Orientat
 
 /// Why a text that nearly is a list of orientations is none, with its line.
 fn nearly_a_list(input: &InputFile) -> Option<String> {
-    const MOST_BYTES: usize = 1 << 20;
     // A list of more than some thousand images is none that a scene is made of.
+    const MOST_BYTES: usize = 1 << 20;
     let text = input.start_as_text(MOST_BYTES)?;
     let error = photogrammetric::nearly_a_list(&input.path, &text)?;
     Some(error.to_string().replace("; ", ", "))

@@ -47,15 +47,16 @@ use self::hypothesis_search::HypothesisSearch;
 use crate::base::agreement::Agreement;
 use crate::photographs::camera::Camera;
 
-/// In smaller images a line is too short to tell the right match from a wrong one, pixels.
-const SMALLEST_PX: u32 = 128;
+/// In images of a smaller shorter side a line is too short to tell the right match from a wrong
+/// one, pixels. Assumption.
+const SMALLEST_SIDE_PX: u32 = 128;
 
 /// Least gain in agreement from which on a hypothesis is accepted.
 const MIN_GAIN: f64 = 0.12;
 
 /// Checks views, and looks for the error where they do not agree.
 pub fn check_orientation(views: &[CheckedView]) -> OrientationCheck {
-    let is_small = |v: &CheckedView| v.camera.width.min(v.camera.height) < SMALLEST_PX;
+    let is_small = |v: &CheckedView| v.camera.width.min(v.camera.height) < SMALLEST_SIDE_PX;
     if views.iter().any(is_small) {
         return CheckFinding::Unknown(Agreement::default()).into();
     }

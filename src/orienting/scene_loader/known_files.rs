@@ -4,8 +4,7 @@
 use nalgebra::Vector3;
 
 use super::input::LoadOptions;
-use super::names::listed;
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::orienting::known::{
     FOOTPRINT_ACCURACY_M, Known, POINT_CLOUD_ACCURACY_M, PointCloud, Register, TERRAIN_ACCURACY_M,
     Terrain, WorldSystem,
@@ -18,7 +17,7 @@ const OWN_PROPERTY: &str = "\"lowest_roof_m\"";
 
 /// Points are of use this far around the region of interest, or what the views show, metres.
 /// Assumption: roofs begin inside it and reach as far beyond.
-const AROUND_M: f64 = 30.0;
+const POINTS_MARGIN_M: f64 = 30.0;
 
 /// What each file is; what the options name as terrain or footprints is that.
 pub(super) fn kinds_of(files: &[InputFile], options: &LoadOptions) -> Vec<FileKind> {
@@ -99,7 +98,12 @@ pub(super) fn read_known(
             .point_cloud_accuracy_m
             .unwrap_or(POINT_CLOUD_ACCURACY_M);
         let around = |[x0, y0, x1, y1]: [f64; 4]| {
-            [x0 - AROUND_M, y0 - AROUND_M, x1 + AROUND_M, y1 + AROUND_M]
+            [
+                x0 - POINTS_MARGIN_M,
+                y0 - POINTS_MARGIN_M,
+                x1 + POINTS_MARGIN_M,
+                y1 + POINTS_MARGIN_M,
+            ]
         };
         PointCloud::read(file, system, origin, accuracy_m, area.map(around))
     });

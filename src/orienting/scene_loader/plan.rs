@@ -14,11 +14,11 @@ use super::checks::camera_checks;
 use super::input::LoadOptions;
 use super::known_files::kinds_of;
 use super::memory;
-use super::names::{images_called, listed, view_names};
+use super::names::{images_called, view_names};
 use super::notices;
 use super::planned_view::{PlannedImage, PlannedView, planned_view};
 use super::region::RegionOfInterest;
-use crate::base::error::Error;
+use crate::base::error::{Error, listed};
 use crate::orienting::orientation::{
     Anchor, FileKind, InputFile, Orientation, OrientationSet, StatedReference, UnreadFormat,
     epsg_of, orientation_sets, to_metric_frame, unread_format,
@@ -534,6 +534,7 @@ fn no_orientation(
 
 /// A mask, perhaps: a photograph in grey values alone is rarely a PNG.
 fn is_gray_png(bytes: &[u8]) -> bool {
+    // The byte that states it, behind signature, length, name, width, height and depth.
     const COLOUR_TYPE: usize = 25;
     bytes.starts_with(b"\x89PNG\r\n\x1a\n") && bytes.get(COLOUR_TYPE) == Some(&0)
 }

@@ -10,6 +10,9 @@ use crate::orienting::scene::View;
 use crate::photographs::camera::{Camera, Distortion};
 use crate::photographs::raster::{ImageHeader, Turn};
 
+/// Images and parts of them keep so many pixels along a side, to be matched. Assumption.
+pub(super) const SMALLEST_SIDE_PX: u32 = 64;
+
 /// An image and the orientation found for it.
 pub(crate) struct PlannedImage {
     pub file: usize,
@@ -70,10 +73,8 @@ impl PlannedView {
     /// over are dropped; the corner of the image is that of its first pixel, so that coordinates
     /// are divided.
     pub(crate) fn reduce(&mut self, factor: u32) {
-        // An image keeps enough pixels to be matched.
-        const SMALLEST_PX: u32 = 64;
         let smallest = self.whole.width.min(self.whole.height);
-        let factor = factor.min(smallest / SMALLEST_PX).max(1);
+        let factor = factor.min(smallest / SMALLEST_SIDE_PX).max(1);
         let by = 1.0 / f64::from(factor);
         self.reduction *= factor;
         self.whole.k = Matrix3::from_diagonal(&Vector3::new(by, by, 1.0)) * self.whole.k;

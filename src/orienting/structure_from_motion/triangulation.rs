@@ -9,7 +9,7 @@ use crate::base::math;
 pub(super) const LEAST_ANGLE: f64 = 1.5 * std::f64::consts::PI / 180.0;
 
 /// Largest residual of a ray, standard deviations.
-pub(super) const MOST_SIGMAS: f64 = 4.0;
+pub(super) const LARGEST_RESIDUAL_SIGMAS: f64 = 4.0;
 
 /// Most pairs of rays that are tried for a point.
 const MOST_PAIRS: usize = 30;
@@ -58,7 +58,7 @@ pub(super) fn triangulate(
             let (mut agreeing, mut sum) = (Vec::new(), 0.0);
             for (k, ray) in rays.iter().enumerate() {
                 let residual = block.residual(ray.observation, &point);
-                if residual <= MOST_SIGMAS {
+                if residual <= LARGEST_RESIDUAL_SIGMAS {
                     agreeing.push(k);
                     sum += residual * residual;
                 }
@@ -75,7 +75,7 @@ pub(super) fn triangulate(
                 let indices: Vec<usize> = agreeing.iter().map(|&k| rays[k].index).collect();
                 let stays = |p: &Point3<f64>| {
                     let mut each = agreeing.iter();
-                    each.all(|&k| block.residual(rays[k].observation, p) <= MOST_SIGMAS)
+                    each.all(|&k| block.residual(rays[k].observation, p) <= LARGEST_RESIDUAL_SIGMAS)
                 };
                 let point = if stays(&mean) { mean } else { point };
                 let is_complete = agreeing.len() == rays.len();

@@ -13,15 +13,15 @@ use crate::roofs::buildings::{Statement, adjust_to_statements};
 use crate::roofs::model::Facet;
 
 /// Standard deviation of slopes and directions that are stated, metres over a few metres.
-const EXACT_M: f64 = 2e-3;
+const STATED_SIGMA_M: f64 = 2e-3;
 /// Steepest slope that can be stated, degrees.
-const STEEPEST_DEG: f64 = 80.0;
+const STEEPEST_SLOPE_DEG: f64 = 80.0;
 /// Corners and edges are moved no further, metres.
-const FURTHEST_M: f64 = 50.0;
+const LONGEST_MOVE_M: f64 = 50.0;
 /// Facets that fall within this angle of opposite directions are symmetric about a ridge, degrees.
 const OPPOSITE_DEG: f64 = 30.0;
 /// Slopes below this have no direction, metres of height per metre.
-const LEVEL: f64 = 1e-3;
+const LEVEL_SLOPE: f64 = 1e-3;
 
 /// A statement that has been adjusted to, by the places where its corners are since.
 #[derive(Clone, Debug)]
@@ -139,28 +139,36 @@ fn statements(
             Ok(about(
                 sides[0][0].of,
                 sides.iter().map(along).collect(),
-                EXACT_M,
+                STATED_SIGMA_M,
             ))
         }
         Correction::SetLevel { facet: place } => {
             let of = facet(place)?;
             let is = Vector2::zeros();
             let face = of.facet;
-            Ok(about(of, vec![Statement::Gradient { face, is }], EXACT_M))
+            Ok(about(
+                of,
+                vec![Statement::Gradient { face, is }],
+                STATED_SIGMA_M,
+            ))
         }
         Correction::SetSlope {
             facet: place,
             slope_deg,
         } => {
-            if !(0.0..STEEPEST_DEG).contains(slope_deg) {
+            if !(0.0..STEEPEST_SLOPE_DEG).contains(slope_deg) {
                 return Err(NotApplied::Implausible);
             }
             let of = facet(place)?;
             let (sin, cos) = math::sin_cos(slope_deg.to_radians());
-            let direction = rise(draft, of).try_normalize(LEVEL);
+            let direction = rise(draft, of).try_normalize(LEVEL_SLOPE);
             let is = direction.ok_or(NotApplied::OtherSlope)? * (sin / cos);
             let face = of.facet;
-            Ok(about(of, vec![Statement::Gradient { face, is }], EXACT_M))
+            Ok(about(
+                of,
+                vec![Statement::Gradient { face, is }],
+                STATED_SIGMA_M,
+            ))
         }
         Correction::SetSymmetric { facets: [a, b] } => {
             let (a, b) = (facet(a)?, facet(b)?);
@@ -174,7 +182,7 @@ fn statements(
                 true => Statement::Opposite { faces },
                 false => Statement::EquallySteep { faces },
             };
-            Ok(about(a, vec![statement], EXACT_M))
+            Ok(about(a, vec![statement], STATED_SIGMA_M))
         }
         _ => Err(NotApplied::NotAdjusted),
     }
@@ -194,7 +202,7 @@ fn plausible(sigma_m: f64) -> Result<f64, NotApplied> {
 }
 
 fn near(from: &Point3<f64>, to: &Point3<f64>) -> Result<(), NotApplied> {
-    let is_near = (to - from).norm() <= FURTHEST_M;
+    let is_near = (to - from).norm() <= LONGEST_MOVE_M;
     is_near.then_some(()).ok_or(NotApplied::Implausible)
 }
 

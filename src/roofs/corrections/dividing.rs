@@ -5,15 +5,15 @@ use nalgebra::{Point2, Point3, Vector2};
 use super::draft::{At, Draft, DraftFacet};
 use super::outcome::NotApplied;
 use super::place::corners;
-use super::plan::{BESIDE_M, LEAST_M, Region};
-use super::shape::{LEAST_AREA_M2, OFF_M, turned, without};
+use super::plan::{Region, SHORTEST_EDGE_M, SIDE_OFFSET_M};
+use super::shape::{LEAST_AREA_M2, OFF_PLANE_M, turned, without};
 use super::slope::{Beside, Slope};
 use crate::base::geometry::{Plane, Segment3};
 use crate::lines::lines3d::{Line3d, Side};
 use crate::roofs::model::{Facet, SideSupport, SideUncertainty};
 
 /// Planes and places farther apart than this many standard deviations are two.
-const DIFFERENT_SIGMAS: f64 = 3.0;
+const DIFFERENCE_SIGMAS: f64 = 3.0;
 
 /// A stretch of a line in plan across a facet, from side to side.
 struct Chord {
@@ -73,8 +73,8 @@ fn halves(
     let (whole, line) = (draft.get(at), beside.line);
     let own = &whole.facet.plane;
     let [from, to] = stretch.map(|t| at_corner(&in_plan(&line.segment, t), &whole.facet, line));
-    let along = (to - from).try_normalize(LEAST_M)?;
-    let aside = Vector2::new(-along.y, along.x) * BESIDE_M;
+    let along = (to - from).try_normalize(SHORTEST_EDGE_M)?;
+    let aside = Vector2::new(-along.y, along.x) * SIDE_OFFSET_M;
     let middle = from + (to - from) * 0.5;
     let region = Region::of(&whole.facet);
     let left = region
@@ -88,7 +88,7 @@ fn halves(
         return None;
     }
     let on_line = [from, to].map(|p| Point3::new(p.x, p.y, height_above(&line.segment, &p)));
-    let reach_m = DIFFERENT_SIGMAS * line.sigma_m.max(OFF_M);
+    let reach_m = DIFFERENCE_SIGMAS * line.sigma_m.max(OFF_PLANE_M);
     let is_off = on_line
         .iter()
         .any(|e| (own.z_at(e.x, e.y) - e.z).abs() > reach_m);
@@ -144,7 +144,7 @@ fn is_other(slope: &Slope, facet: &Facet, own: &Plane, line: &Line3d) -> bool {
         let rise = slope.plane.z_at(p.x, p.y) - own.z_at(p.x, p.y);
         let turn_m = slope.sigma_theta * line.segment.line_distance(p);
         let sigma_m = (turn_m * turn_m + line.sigma_m * line.sigma_m).sqrt();
-        rise.abs() > DIFFERENT_SIGMAS * sigma_m
+        rise.abs() > DIFFERENCE_SIGMAS * sigma_m
     })
 }
 
@@ -197,7 +197,7 @@ fn height_above(line: &Segment3, p: &Point2<f64>) -> f64 {
 fn at_corner(p: &Point2<f64>, facet: &Facet, line: &Line3d) -> Point2<f64> {
     let near = corners(facet)
         .map(|q| ((q.xy() - p).norm(), q.xy()))
-        .filter(|(apart, _)| *apart <= DIFFERENT_SIGMAS * line.sigma_m);
+        .filter(|(apart, _)| *apart <= DIFFERENCE_SIGMAS * line.sigma_m);
     let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
     nearest.map_or(*p, |(_, corner)| corner)
 }

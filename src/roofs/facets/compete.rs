@@ -189,7 +189,7 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[PlanRegion]) -> Optio
     let [min, max] = bounds(regions.iter().flat_map(PlanRegion::bounds));
     let size = max - min;
     // Coarser cells for a very large window: at most 9 million.
-    let step = step.max(FINEST_CELL).max((size.x * size.y / 9e6).sqrt());
+    let step = step.max(FINEST_CELL_M).max((size.x * size.y / 9e6).sqrt());
     (size.x > 0.0 && size.y > 0.0 && step.is_finite()).then(|| PlanGrid::covering(min, max, step))
 }
 
@@ -206,7 +206,7 @@ fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Sharded<Option
 
 /// Finest cell, metres. Assumption: samples 6 cm apart are what a roof's border lines can be told
 /// apart by; sharper images are reduced.
-const FINEST_CELL: f64 = 0.12;
+pub(crate) const FINEST_CELL_M: f64 = 0.12;
 
 /// The borders and a frame around the window, so that every cell that matters is closed.
 fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {

@@ -99,11 +99,13 @@ fn solve(
     known: &KnownEvidence,
     params: &RoofParams,
 ) -> Verified {
-    const ROUNDS: usize = 4;
+    // Where a facet is rejected its cells are labelled anew. Assumption: what is rejected in the
+    // fourth round leaves a gap.
+    const REJECTION_ROUNDS: usize = 4;
     let (mut rejected, mut improbable) = (Vec::new(), Vec::new());
     // By plane and cells.
     let mut measured: BTreeMap<(u32, Vec<usize>), Measured> = BTreeMap::new();
-    for round in 1..=ROUNDS {
+    for round in 1..=REJECTION_ROUNDS {
         labelling.minimise();
         let labels = labelling.labels();
         let labels = without_islands(&competing.arrangement, labels, params.min_area_m2);
@@ -155,7 +157,7 @@ fn solve(
                 }
                 Err(reason) => reason,
             };
-            if round < ROUNDS
+            if round < REJECTION_ROUNDS
                 && matches!(reason, FacetRejection::ReachesGround { .. })
                 && let Some(tail) = tail_on_ground(
                     &facet.plane,
@@ -181,7 +183,7 @@ fn solve(
                 excluded.push((outline.plane, outline.cells.clone()));
             }
         }
-        if excluded.is_empty() || round == ROUNDS {
+        if excluded.is_empty() || round == REJECTION_ROUNDS {
             rejected.extend(on_ground);
             accepted.extend(improbable);
             let simpler = competing.simplify(delineation, &stands, params);

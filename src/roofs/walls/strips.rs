@@ -13,7 +13,7 @@ use crate::base::math::{larger, smaller};
 use crate::orienting::scene::Scene;
 use crate::photographs::camera::Camera;
 use crate::photographs::raster::{Outside, Warp};
-use crate::planes::photoconsistency::residual_variance;
+use crate::planes::photoconsistency::{LEAST_VARIANCE, MAX_VIEWS, residual_variance};
 use crate::roofs::model::Occluders;
 use crate::roofs::solids::{RIM_M, Side};
 
@@ -28,17 +28,11 @@ const LEAST_COLUMNS: usize = 20;
 /// metres of it would be two pixels.
 const LEAST_TANGENT: f64 = 0.05;
 
-/// As many views are compared as elsewhere.
-const MAX_VIEWS: usize = 6;
-
 /// Rows on a wall are no further apart, metres.
 const HIGHEST_ROW_M: f64 = 0.6;
 
 /// Lower roofs show no wall, metres.
 const LEAST_HEIGHT_M: f64 = 1.5;
-
-/// Variance of grey values below which they are taken as constant.
-const LEAST_VARIANCE: f32 = 1e-7;
 
 /// A view that looks under the side.
 struct SideView<'a> {

@@ -169,13 +169,14 @@ fn each_point(
 
 /// The classes that points have instead, the most frequent ones.
 fn listed(others: &BTreeMap<u8, u64>) -> String {
-    const MOST_NAMED: usize = 4;
+    // A refusal names no more. Assumption.
+    const MOST_CLASSES_NAMED: usize = 4;
     let mut all: Vec<(u8, u64)> = others
         .iter()
         .map(|(class, count)| (*class, *count))
         .collect();
     all.sort_by_key(|&(class, count)| (std::cmp::Reverse(count), class));
-    let names: Vec<String> = (all.iter().take(MOST_NAMED))
+    let names: Vec<String> = (all.iter().take(MOST_CLASSES_NAMED))
         .map(|&(class, count)| match class_name(class) {
             Some(name) => format!("{count} are {name} ({class})"),
             None => format!("{count} are of class {class}"),

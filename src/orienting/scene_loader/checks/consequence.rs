@@ -1,9 +1,8 @@
 //! What follows from the finding of the orientation check: a refusal or a warning, in words.
 
 use crate::base::agreement::Agreement;
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::orienting::orientation_check::{CheckFinding, CheckedView, OrientationCheck};
-use crate::orienting::scene_loader::names::listed;
 
 /// A warning, or the refusal of the scene. `refusal` is the one that the positions of the cameras
 /// alone gave reason for; with `ignore_check` what the images contradict is only a warning.

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::camera_checks;
 use super::consequence::warning_or_refusal;
 use crate::base::agreement::{Agreement, AgreementReport};
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::orienting::orientation::AngleUnit;
 use crate::orienting::orientation_check::{
     AngleReadings, CheckFinding, CheckedView, OrientationCheck, cameras_in, check_orientation,
@@ -13,7 +13,6 @@ use crate::orienting::orientation_check::{
 };
 use crate::orienting::scene::ViewShift;
 use crate::orienting::scene_loader::input::LoadOptions;
-use crate::orienting::scene_loader::names::listed;
 use crate::photographs::camera::Camera;
 
 /// Cameras as they are to be used, what was found and what was corrected.

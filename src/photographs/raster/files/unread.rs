@@ -146,9 +146,13 @@ fn by_boxes(bytes: &[u8]) -> Option<UnreadImageFormat> {
 
 /// Raw files that are TIFFs: the first image in them is a thumbnail, or a sensor's pattern.
 fn raw_in_tiff(excerpt: Excerpt) -> Option<UnreadImageFormat> {
+    // Photometric interpretations of DNG, which others use too: a colour filter array, and linear
+    // raw values.
     const PATTERN_OF_A_SENSOR: u64 = 32803;
     const LINEAR_RAW: u64 = 34892;
-    const MOST: usize = 8;
+    // Directories that are looked at: raw files have a thumbnail, a preview and the sensor's
+    // values, in any order. Assumption.
+    const MOST_DIRECTORIES: usize = 8;
     let bytes = excerpt.start();
     if bytes.get(8..10) == Some(b"CR") {
         return Some(CANON);
@@ -163,11 +167,11 @@ fn raw_in_tiff(excerpt: Excerpt) -> Option<UnreadImageFormat> {
         let meaning = directory.number(tags::PHOTOMETRIC);
         meaning.is_some_and(|m| [PATTERN_OF_A_SENSOR, LINEAR_RAW].contains(&m))
     };
-    for directory in Directory::chain(excerpt).take(MOST) {
+    for directory in Directory::chain(excerpt).take(MOST_DIRECTORIES) {
         if directory.raw(tags::DNG_VERSION).is_some() {
             return Some(DNG);
         }
-        if is_raw(&directory) || directory.below().take(MOST).any(|d| is_raw(&d)) {
+        if is_raw(&directory) || directory.below().take(MOST_DIRECTORIES).any(|d| is_raw(&d)) {
             return Some(RAW);
         }
     }

@@ -13,9 +13,9 @@ use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::{parse, refuse};
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::base::geometry::rotation_from_axis_angle;
-use crate::orienting::orientation::formats::left_out::{LeftOut, few};
+use crate::orienting::orientation::formats::left_out::LeftOut;
 use crate::orienting::orientation::formats::text::quoted_long;
 use crate::orienting::orientation::geodesy::Anchor;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
@@ -206,7 +206,7 @@ fn unknown_camera(
             true => "it holds no camera: take the file of the same run".to_owned(),
             false => quoted_long(&format!(
                 "it has {}: take the file of the same run",
-                few(&names)
+                listed(&names)
             )),
         },
     }

@@ -14,8 +14,8 @@ use nalgebra::{Matrix3, Matrix4, Point3, Vector3};
 use roxmltree::{Document, Node};
 
 use super::{Sensor, XmlReader, child, parse};
-use crate::base::error::{Error, Result};
-use crate::orienting::orientation::formats::left_out::{LeftOut, few};
+use crate::base::error::{Error, Result, listed};
+use crate::orienting::orientation::formats::left_out::LeftOut;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 use crate::photographs::camera::{Distortion, Projection};
 
@@ -196,11 +196,11 @@ impl<'a, 'b, 'c> Chunk<'a, 'b, 'c> {
         }
         let mut warn = |what: &str| warnings.push(format!("{what} ({})", self.place()));
         if !disabled.is_empty() {
-            let names = few(&disabled);
+            let names = listed(&disabled);
             warn(&format!("disabled cameras are left out: {names}"));
         }
         if !unknown.is_empty() {
-            let names = few(&unknown);
+            let names = listed(&unknown);
             warn(&format!(
                 "cameras of a rig are left out, since their sensors state no rotation and location towards the master: {names}"
             ));
@@ -272,7 +272,7 @@ impl<'a, 'b, 'c> Chunk<'a, 'b, 'c> {
         if !others.is_empty() {
             warnings.push(format!(
                 "cameras of a component that is not placed together with the others are left out: {} ({place})",
-                few(&others)
+                listed(&others)
             ));
         }
         if kept.is_some() {

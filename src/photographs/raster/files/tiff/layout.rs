@@ -262,13 +262,15 @@ impl Layout {
 
 /// Is it no reduced copy, and no mask?
 pub(super) fn is_full(directory: &Directory) -> bool {
-    const REDUCED: u64 = 1;
+    // Bits of the subfile's type (TIFF 6.0, section 8).
+    const REDUCED_COPY: u64 = 1;
     const MASK: u64 = 4;
-    directory.number(tags::NEW_SUBFILE_TYPE).unwrap_or(0) & (REDUCED | MASK) == 0
+    directory.number(tags::NEW_SUBFILE_TYPE).unwrap_or(0) & (REDUCED_COPY | MASK) == 0
 }
 
 /// Bits of a sample: 8 or 16, without sign.
 fn bits(directory: &Directory) -> std::result::Result<u8, String> {
+    // Formats of samples (TIFF 6.0, section 19).
     const UNSIGNED: u64 = 1;
     const SIGNED: u64 = 2;
     const UNDEFINED: u64 = 4;
