@@ -80,14 +80,7 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     let seconds = run_stages(&mut run);
     let is_empty = (run.results().roof_model()).is_none_or(|model| model.buildings.is_empty());
     if is_doubtful && is_empty {
-        let error = ridgeline::Error::Scene {
-            problem: "the images hardly agree with their orientation, and show no roof with it"
-                .to_owned(),
-            advice: "check that images and orientation belong together (names, folders, the same \
-                     flight), or have the empty model written nevertheless (--ignore-check)"
-                .to_owned(),
-        };
-        return Err(refuse(error));
+        return Err(refuse(shows_nothing()));
     }
     let written = run.files(&seconds);
     files::write_all(&args.out, &written)?;
@@ -103,6 +96,17 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         table::summary(&run, load_seconds, &seconds, &written, &args.out)
     );
     Ok(())
+}
+
+/// The refusal to write an empty model of images that hardly agree with their orientation.
+fn shows_nothing() -> ridgeline::Error {
+    ridgeline::Error::Scene {
+        problem: "the images hardly agree with their orientation, and show no roof with it"
+            .to_owned(),
+        advice: "check that images and orientation belong together (names, folders, the same \
+                 flight), or have the empty model written nevertheless (--ignore-check)"
+            .to_owned(),
+    }
 }
 
 /// Do the images hardly agree with the orientation, though no mistake explains it?

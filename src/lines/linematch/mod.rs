@@ -113,21 +113,16 @@ pub fn match_lines(
     // With few views each of them is needed, however it shows a line.
     let few = scene.views.len() <= params.min_views;
     if few && !search.selection.lines.is_empty() {
-        let compatibility = Compatibility {
-            contrast: false,
-            kind: false,
+        let compatibility = Compatibility::ANY;
+        let scope = PairScope {
+            compatibility,
+            ..scope
         };
-        search.run(
-            &PairScope {
-                compatibility,
-                ..scope
-            },
-            &MatchContext {
-                compatibility,
-                ..context
-            },
-            Pass::Second,
-        )?;
+        let context = MatchContext {
+            compatibility,
+            ..context
+        };
+        search.run(&scope, &context, Pass::Second)?;
     }
     let MatchSearch {
         pairs,

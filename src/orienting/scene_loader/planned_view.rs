@@ -153,12 +153,7 @@ pub(super) fn planned_view(
     }
     let mut distortion = orientation.distortion;
     if let Some(lens) = &mut distortion {
-        let pinhole = match lens.is_fisheye() {
-            true => lens.rectified(&camera.k, width, height),
-            false if lens.is_plausible(&camera.k, width, height) => Ok((camera.k, *lens)),
-            false => Err("folds the image over"),
-        };
-        (camera.k, *lens) = pinhole.map_err(|problem| {
+        (camera.k, *lens) = pinhole_of(lens, &camera).map_err(|problem| {
             refuse(
                 format!("the lens distortion in {} {problem}", orientation.source),
                 "check the order and the signs of the coefficients, or undistort the images",
@@ -178,6 +173,22 @@ pub(super) fn planned_view(
         part: None,
         turn,
     })
+}
+
+/// The calibration of the pinhole that a photograph is resampled to, and the lens seen from it; or
+/// what is wrong with the lens.
+fn pinhole_of(
+    lens: &Distortion,
+    camera: &Camera,
+) -> std::result::Result<(Matrix3<f64>, Distortion), &'static str> {
+    let Camera {
+        k, width, height, ..
+    } = camera;
+    match lens.is_fisheye() {
+        true => lens.rectified(k, *width, *height),
+        false if lens.is_plausible(k, *width, *height) => Ok((*k, *lens)),
+        false => Err("folds the image over"),
+    }
 }
 
 /// The quarter turn after which the image has the size that its orientation states.

@@ -92,19 +92,15 @@ fn halves(
     let is_off = on_line
         .iter()
         .any(|e| (own.z_at(e.x, e.y) - e.z).abs() > reach_m);
+    let lifted = is_off.then(|| Segment3::new(on_line[0], on_line[1]));
     let turned_to = [Side::Left, Side::Right].map(|side| {
-        let parts = whole.over(regions[side as usize]);
-        let area = |part: &&DraftFacet| part.facet.plan_area();
-        let half = &parts
-            .iter()
-            .max_by(|a, b| area(a).total_cmp(&area(b)))?
-            .facet;
-        let otherwise = match is_off {
-            true => turned(half, &Segment3::new(on_line[0], on_line[1])),
-            false => *own,
-        };
-        let slope = beside.slope(side, half, otherwise);
-        is_other(&slope, half, own, line).then_some(slope.plane)
+        other_plane(
+            &whole.over(regions[side as usize]),
+            side,
+            own,
+            beside,
+            &lifted,
+        )
     });
     // What no other photograph shows lies on the facet, and bounds what does not: one half.
     let turning = turned_to.iter().flatten().count();
@@ -136,6 +132,28 @@ fn halves(
         }
     }
     Some((facets, ends))
+}
+
+/// The plane of a half whose largest part falls otherwise than the facet does; `lifted` is its edge
+/// where that lies off the facet.
+fn other_plane(
+    parts: &[DraftFacet],
+    side: Side,
+    own: &Plane,
+    beside: &Beside,
+    lifted: &Option<Segment3>,
+) -> Option<Plane> {
+    let area = |part: &&DraftFacet| part.facet.plan_area();
+    let half = &parts
+        .iter()
+        .max_by(|a, b| area(a).total_cmp(&area(b)))?
+        .facet;
+    let otherwise = match lifted {
+        Some(edge) => turned(half, edge),
+        None => *own,
+    };
+    let slope = beside.slope(side, half, otherwise);
+    is_other(&slope, half, own, beside.line).then_some(slope.plane)
 }
 
 /// Is a plane beside a line, at the corners of a facet, another one than that of the facet?

@@ -39,10 +39,7 @@ pub(crate) fn complete_from_edges(
         z_range,
         params,
         fitting,
-        compatibility: Compatibility {
-            contrast: false,
-            kind: false,
-        },
+        compatibility: Compatibility::ANY,
     };
     let (mut line, mut found) = (*start, None);
     for _ in 0..MEASUREMENT_ROUNDS {

@@ -78,13 +78,7 @@ impl Header {
         if data < header_size || data > bytes.len() {
             return Err(format!("its points begin at byte {data}, which it has not"));
         }
-        let mut count = u64::from(u32_at(bytes, 107));
-        let mut extended = (0, 0);
-        if minor == 4 {
-            extended = (u64_at(bytes, 235), u32_at(bytes, 243));
-            let of_1_4 = u64_at(bytes, 247);
-            count = if of_1_4 == 0 { count } else { of_1_4 };
-        }
+        let (count, extended) = counts(bytes, minor);
         let three = |at: usize| [0, 8, 16].map(|k| f64_at(bytes, at + k));
         let (scale, offset) = (three(131), three(155));
         if !scale.iter().chain(&offset).all(|v| v.is_finite()) || scale.contains(&0.0) {
@@ -184,6 +178,17 @@ impl Header {
         }
         None
     }
+}
+
+/// The number of points, and where the extended variable records begin and how many they are.
+fn counts(bytes: &[u8], minor: u8) -> (u64, (u64, u32)) {
+    let count = u64::from(u32_at(bytes, 107));
+    if minor < 4 {
+        return (count, (0, 0));
+    }
+    let of_1_4 = u64_at(bytes, 247);
+    let count = if of_1_4 == 0 { count } else { of_1_4 };
+    (count, (u64_at(bytes, 235), u32_at(bytes, 243)))
 }
 
 fn taken<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {

@@ -45,27 +45,31 @@ pub(crate) fn warning_or_refusal(
             return Err(contradiction(problem.clone(), advice));
         }
     }
-    if let Some(refusal) = refusal {
-        return Err(match (finding, refusal) {
-            (CheckFinding::Sound(agreement) | CheckFinding::Offset { agreement, .. }, refusal) => {
-                contradiction(
-                    format!(
-                        "{} (but the images agree with one another to {:.2}, so it is the world that is turned or \
-                         displaced)",
-                        problem_of(&refusal),
-                        agreement.score
-                    ),
-                    "the orientation is needed with Z up, in metres above the ground's height system",
-                )
-            }
-            (_, Error::Scene { problem, advice }) => contradiction(problem, &advice),
-            (_, refusal) => refusal,
-        });
+    match (finding, refusal) {
+        (
+            CheckFinding::Sound(agreement) | CheckFinding::Offset { agreement, .. },
+            Some(refusal),
+        ) => Err(contradiction(
+            format!(
+                "{} (but the images agree with one another to {:.2}, so it is the world that is turned or \
+                 displaced)",
+                problem_of(&refusal),
+                agreement.score
+            ),
+            "the orientation is needed with Z up, in metres above the ground's height system",
+        )),
+        (_, Some(Error::Scene { problem, advice })) => Err(contradiction(problem, &advice)),
+        (_, Some(refusal)) => Err(refusal),
+        (_, None) => Ok(match disagreement {
+            Some((problem, _)) => Some(problem),
+            None => warning(finding, views),
+        }),
     }
-    if let Some((problem, _)) = disagreement {
-        return Ok(Some(problem));
-    }
-    Ok(match finding {
+}
+
+/// What is to be said of a finding that refuses nothing.
+fn warning(finding: &CheckFinding, views: &[CheckedView]) -> Option<String> {
+    match finding {
         CheckFinding::Offset {
             offsets_px: [before, after],
             words,
@@ -83,7 +87,7 @@ pub(crate) fn warning_or_refusal(
             "{}: check that they belong together",
             hardly_agree(agreement)
         )),
-    })
+    }
 }
 
 fn hardly_agree(agreement: &Agreement) -> String {

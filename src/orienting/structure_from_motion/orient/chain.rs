@@ -259,19 +259,17 @@ impl OrientChain {
     /// # Errors
     /// Where fewer than three photographs join; the message says why.
     pub fn orient(&self, mut on_block: Option<OnBlock>) -> Result<Oriented> {
-        let Some(connected) = &self.connected else {
+        let unknown = || {
             let photographs = self.photos.len() + self.left_out.len();
-            return Err(refusal(
-                format!("the pairs of the {photographs} photographs are not known yet"),
-                "find them first",
-            ));
+            let problem = format!("the pairs of the {photographs} photographs are not known yet");
+            refusal(problem, "find them first")
         };
         let Connected {
             cameras,
             stated,
             anchor,
             hypotheses,
-        } = connected;
+        } = self.connected.as_ref().ok_or_else(unknown)?;
         let mut show = |block: &Block| {
             if let Some(on_block) = &mut on_block {
                 on_block(Snapshot::of(block, &self.photos, stated, *anchor));
@@ -298,21 +296,20 @@ impl OrientChain {
         let is_held = self.options.holds_center;
         let adjusted = calibrate_center(&mut block, means, is_guessed, is_held);
         let paths: Vec<&str> = self.photos.iter().map(|p| p.path.as_str()).collect();
-        let (basis, no_control) = match &self.control {
-            Some(control) => match to_control(&mut block, &paths, control) {
-                Ok(basis) => (basis, None),
-                Err(why) => (to_frame(&mut block, stated, *anchor), Some(why)),
-            },
-            None => (to_frame(&mut block, stated, *anchor), None),
+        let control = (self.control.as_ref()).map(|c| to_control(&mut block, &paths, c));
+        let (basis, no_control) = match control.transpose() {
+            Ok(Some(basis)) => (basis, None),
+            other => (to_frame(&mut block, stated, *anchor), other.err()),
         };
         // The covariance belongs to the frame.
         let covariance = adjusted.and_then(|options| covariance(&block, means, &options));
         // What the headers state, and guesses where they state nothing.
-        let before: Vec<Intrinsics> = (cameras.is_guessed.iter().enumerate())
-            .map(|(i, &is_guessed)| match is_guessed {
-                true => means[i].clone(),
-                false => cameras.intrinsics[i].clone(),
-            })
+        let choice = cameras
+            .is_guessed
+            .iter()
+            .zip(means.iter().zip(&cameras.intrinsics));
+        let before: Vec<Intrinsics> = choice
+            .map(|(&is_guessed, (mean, stated))| if is_guessed { mean } else { stated }.clone())
             .collect();
         if place > 0 && !cameras.is_guessed.contains(&true) {
             undetermined_focal(&block.cameras, &before, covariance.as_ref())?;

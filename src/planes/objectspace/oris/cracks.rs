@@ -112,8 +112,8 @@ struct Cracks<'a> {
 }
 
 impl Cracks<'_> {
-    /// The region of a pixel, counted from 1, with columns and rows counted from 1; [`OUTSIDE_REGION`]
-    /// beyond the border.
+    /// The region of a pixel, counted from 1, with columns and rows counted from 1;
+    /// [`OUTSIDE_REGION`] beyond the border.
     fn label(&self, column: usize, row: usize) -> u32 {
         let inside = (1..=self.width).contains(&column) && (1..=self.height).contains(&row);
         if inside {

@@ -2,8 +2,8 @@
 //! planes").
 //!
 //! Candidates that overlap in plan exclude each other. The set with the largest sum of measures is
-//! found exactly where few candidates stand in each other's way, by branch and bound; larger
-//! groups of conflicts start from the greedy set and exchange one candidate for those that it excludes
+//! found exactly where few candidates stand in each other's way, by branch and bound; larger groups
+//! of conflicts start from the greedy set and exchange one candidate for those that it excludes
 //! while the sum grows.
 
 use i_overlay::core::fill_rule::FillRule;

@@ -104,21 +104,11 @@ impl Layout {
         let bits = bits(directory).map_err(unread)?;
         let photometric = directory.number(tags::PHOTOMETRIC);
         let photometric = photometric.ok_or_else(|| missing("what its samples mean"))?;
+        let palette = || palette(directory).ok_or_else(|| missing("its table of colours"));
+        let is_jpeg = compression == Compression::Jpeg;
         let (colours, needed) = match photometric {
-            0 | 1 => (Colours::Grey, 1),
-            2 => (Colours::Rgb, 3),
-            3 if bits == 8 => {
-                let table = palette(directory).ok_or_else(|| missing("its table of colours"))?;
-                (Colours::Palette(table), 1)
-            }
-            3 => return Err(unread("its table of colours is one of 16 bits".to_owned())),
-            6 if compression == Compression::Jpeg => (Colours::YCbCr, 3),
-            6 => return Err(unread("its colours are YCbCr without JPEG".to_owned())),
-            5 => return Err(unread("its colours are those of a press (CMYK)".to_owned())),
-            8..=10 => return Err(unread("its colours are CIE Lab".to_owned())),
-            4 => return Err(unread("it is a mask, no photograph".to_owned())),
-            32803 | 34892 => return Err(unread("it is a camera's raw file".to_owned())),
-            other => return Err(unread(format!("its samples mean number {other}"))),
+            3 if bits == 8 => (Colours::Palette(palette()?), 1),
+            other => plain_colours(other, is_jpeg).map_err(unread)?,
         };
         let samples = usize::try_from(number(tags::SAMPLES_PER_PIXEL, 1)).unwrap_or(0);
         if samples < needed || samples > usize::from(u16::MAX) {
@@ -129,7 +119,7 @@ impl Layout {
                 "the bits of its bytes are in reverse order".to_owned(),
             ));
         }
-        if compression == Compression::Jpeg && bits != 8 {
+        if is_jpeg && bits != 8 {
             return Err(unread(format!("it is compressed as JPEG of {bits} bits")));
         }
         let predictor = number(tags::PREDICTOR, 1);
@@ -258,6 +248,23 @@ impl Layout {
     pub(super) fn samples_of_a_chunk(&self) -> usize {
         if self.is_planar { 1 } else { self.samples }
     }
+}
+
+/// What the samples mean, and how many of them a pixel needs; or why that cannot be read. Numbers
+/// are those of the photometric interpretation (TIFF 6.0, section 8).
+fn plain_colours(photometric: u64, is_jpeg: bool) -> std::result::Result<(Colours, usize), String> {
+    Err(match photometric {
+        0 | 1 => return Ok((Colours::Grey, 1)),
+        2 => return Ok((Colours::Rgb, 3)),
+        6 if is_jpeg => return Ok((Colours::YCbCr, 3)),
+        3 => "its table of colours is one of 16 bits".to_owned(),
+        4 => "it is a mask, no photograph".to_owned(),
+        5 => "its colours are those of a press (CMYK)".to_owned(),
+        6 => "its colours are YCbCr without JPEG".to_owned(),
+        8..=10 => "its colours are CIE Lab".to_owned(),
+        32803 | 34892 => "it is a camera's raw file".to_owned(),
+        other => format!("its samples mean number {other}"),
+    })
 }
 
 /// Is it no reduced copy, and no mask?
