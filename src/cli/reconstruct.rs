@@ -67,6 +67,28 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
             inspection.peak_mb
         );
     }
+    let opened = OpenedScene {
+        files: input,
+        options,
+        params,
+        seen,
+    };
+    reconstruct_whole(args, opened, start)
+}
+
+/// Reconstructs a scene that is loaded as one.
+fn reconstruct_whole(
+    args: &ReconstructArgs,
+    opened: OpenedScene,
+    start: Instant,
+) -> Result<(), Failure> {
+    let OpenedScene {
+        files: mut input,
+        options,
+        params,
+        seen,
+    } = opened;
+    let refuse = |e: ridgeline::Error| refusal(&e, &seen);
     let planned = PlannedScene::new(&mut input, &options).map_err(refuse)?;
     let scene = planned.load(&input.files).map_err(refuse)?;
     eprintln!("{seen}");

@@ -130,18 +130,7 @@ pub(super) fn planned_view(
             "use the images in the size that was oriented, or scale the orientation to this one",
         ));
     }
-    let mut k = orientation.k;
-    if orientation.from_middle {
-        k[(0, 2)] += f64::from(width) / 2.0;
-        k[(1, 2)] += f64::from(height) / 2.0;
-    }
-    let mut camera = Camera {
-        k,
-        r: orientation.r,
-        center: orientation.center,
-        width,
-        height,
-    };
+    let mut camera = camera_of(orientation, width, height);
     if let Some(problem) = camera_checks::numeric_problem(&camera) {
         return Err(refuse(
             format!(
@@ -173,6 +162,21 @@ pub(super) fn planned_view(
         part: None,
         turn,
     })
+}
+
+fn camera_of(orientation: &Orientation, width: u32, height: u32) -> Camera {
+    let mut k = orientation.k;
+    if orientation.from_middle {
+        k[(0, 2)] += f64::from(width) / 2.0;
+        k[(1, 2)] += f64::from(height) / 2.0;
+    }
+    Camera {
+        k,
+        r: orientation.r,
+        center: orientation.center,
+        width,
+        height,
+    }
 }
 
 /// The calibration of the pinhole that a photograph is resampled to, and the lens seen from it; or

@@ -55,14 +55,7 @@ pub(super) fn triangulate(
             let Some(point) = nearest_point(pair.map(|r| (r.pose.center, r.direction))) else {
                 continue;
             };
-            let (mut agreeing, mut sum) = (Vec::new(), 0.0);
-            for (k, ray) in rays.iter().enumerate() {
-                let residual = block.residual(ray.observation, &point);
-                if residual <= LARGEST_RESIDUAL_SIGMAS {
-                    agreeing.push(k);
-                    sum += residual * residual;
-                }
-            }
+            let (agreeing, sum) = agreeing(block, &rays, &point);
             let is_better = best.as_ref().is_none_or(|(_, most, least)| {
                 agreeing.len() > most.len() || (agreeing.len() == most.len() && sum < *least)
             });
@@ -87,6 +80,19 @@ pub(super) fn triangulate(
         }
     }
     finished(best)
+}
+
+/// The rays that agree with a point, and the sum of their squared residuals.
+fn agreeing(block: &Block, rays: &[Ray], point: &Point3<f64>) -> (Vec<usize>, f64) {
+    let (mut agreeing, mut sum) = (Vec::new(), 0.0);
+    for (k, ray) in rays.iter().enumerate() {
+        let residual = block.residual(ray.observation, point);
+        if residual <= LARGEST_RESIDUAL_SIGMAS {
+            agreeing.push(k);
+            sum += residual * residual;
+        }
+    }
+    (agreeing, sum)
 }
 
 fn finished(best: Option<(Point3<f64>, Vec<usize>, f64)>) -> Option<(Point3<f64>, Vec<usize>)> {

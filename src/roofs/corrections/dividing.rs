@@ -74,19 +74,7 @@ fn halves(
     let own = &whole.facet.plane;
     let [from, to] = stretch.map(|t| at_corner(&in_plan(&line.segment, t), &whole.facet, line));
     let along = (to - from).try_normalize(SHORTEST_EDGE_M)?;
-    let aside = Vector2::new(-along.y, along.x) * SIDE_OFFSET_M;
-    let middle = from + (to - from) * 0.5;
-    let region = Region::of(&whole.facet);
-    let left = region
-        .left_of(&middle, &along)
-        .connected_at(&(middle + aside));
-    let right = region.without(&left).connected_at(&(middle - aside));
-    // Beyond its ends the edge divides nothing: what lies there belongs to the half beside it.
-    let left = region.without(&right);
-    let regions = [&left, &right];
-    if regions.iter().any(|half| half.area() < LEAST_AREA_M2) {
-        return None;
-    }
+    let regions = regions_beside(&whole.facet, &(from + (to - from) * 0.5), &along)?;
     let on_line = [from, to].map(|p| Point3::new(p.x, p.y, height_above(&line.segment, &p)));
     let reach_m = DIFFERENCE_SIGMAS * line.sigma_m.max(OFF_PLANE_M);
     let is_off = on_line
@@ -95,7 +83,7 @@ fn halves(
     let lifted = is_off.then(|| Segment3::new(on_line[0], on_line[1]));
     let turned_to = [Side::Left, Side::Right].map(|side| {
         other_plane(
-            &whole.over(regions[side as usize]),
+            &whole.over(&regions[side as usize]),
             side,
             own,
             beside,
@@ -115,7 +103,7 @@ fn halves(
     let edge = Segment3::new(ends[0], ends[1]);
     let mut facets = without(&draft.houses[at.house].facets, &[at.facet]);
     for side in [0, 1] {
-        for mut part in whole.over(regions[side]) {
+        for mut part in whole.over(&regions[side]) {
             let plane = turned_to[side].map(|plane| through(&edge, &plane));
             if let Some(plane) = plane {
                 part = part.on(plane);
@@ -132,6 +120,24 @@ fn halves(
         }
     }
     Some((facets, ends))
+}
+
+/// What of a facet lies to the left and to the right of an edge; `None` where that is nothing.
+fn regions_beside(
+    facet: &Facet,
+    middle: &Point2<f64>,
+    along: &Vector2<f64>,
+) -> Option<[Region; 2]> {
+    let aside = Vector2::new(-along.y, along.x) * SIDE_OFFSET_M;
+    let region = Region::of(facet);
+    let left = region
+        .left_of(middle, along)
+        .connected_at(&(middle + aside));
+    let right = region.without(&left).connected_at(&(middle - aside));
+    // Beyond its ends the edge divides nothing: what lies there belongs to the half beside it.
+    let regions = [region.without(&right), right];
+    let is_too_small = |half: &Region| half.area() < LEAST_AREA_M2;
+    (!regions.iter().any(is_too_small)).then_some(regions)
 }
 
 /// The plane of a half whose largest part falls otherwise than the facet does; `lifted` is its edge

@@ -123,6 +123,29 @@ struct Round {
     on_ground: Vec<RejectedFacet>,
 }
 
+impl Round {
+    fn reject(
+        &mut self,
+        outline: &Outline,
+        facet: Facet,
+        reason: FacetRejection,
+        rejected: &mut Vec<RejectedFacet>,
+    ) {
+        let near_ground = matches!(reason, FacetRejection::NearGround { .. });
+        let rejection = RejectedFacet {
+            group: outline.plane,
+            outline: facet.outer,
+            reason,
+        };
+        if near_ground {
+            self.on_ground.push(rejection);
+        } else {
+            rejected.push(rejection);
+            self.excluded.push((outline.plane, outline.cells.clone()));
+        }
+    }
+}
+
 /// What facets are verified with.
 #[derive(Clone, Copy)]
 struct Verifier<'a> {
@@ -212,19 +235,8 @@ impl Verifier<'_> {
             };
             if !is_last && let Some(tail) = self.tail_on_ground(&reason, &facet, outline) {
                 round.excluded.push((outline.plane, tail));
-                continue;
-            }
-            let near_ground = matches!(reason, FacetRejection::NearGround { .. });
-            let rejection = RejectedFacet {
-                group: outline.plane,
-                outline: facet.outer,
-                reason,
-            };
-            if near_ground {
-                round.on_ground.push(rejection);
             } else {
-                weighed.rejected.push(rejection);
-                round.excluded.push((outline.plane, outline.cells.clone()));
+                round.reject(outline, facet, reason, &mut weighed.rejected);
             }
         }
         round

@@ -108,12 +108,6 @@ pub(in super::super) fn report(
     let RayCounts { rays, squares, .. } = &counts;
     let registered = block.registered();
     let total: usize = rays.iter().sum();
-    let partners = |photo: usize| {
-        let others = registered.iter().filter(|&&other| other != photo);
-        others
-            .filter(|&&other| counts.shared(photo, other) >= FEWEST_SHARED)
-            .count()
-    };
     let photos: Vec<PhotoReport> = (registered.iter().enumerate())
         .map(|(slot, &photo)| PhotoReport {
             file: names.paths[photo].to_owned(),
@@ -121,19 +115,10 @@ pub(in super::super) fn report(
             rms_px: (squares[photo] / rays[photo].max(1) as f64).sqrt(),
             sigma_m: covariance.map(|c| deviations(&c.centers[slot])),
             sigma_deg: covariance.map(|c| largest_deviation(&c.turns[slot]).to_degrees()),
-            partners: partners(photo),
+            partners: counts.partners(photo, &registered),
             from_stated_m: from_stated(block, names, basis, photo),
         })
         .collect();
-    let mut overlap = Vec::new();
-    for (i, &a) in registered.iter().enumerate() {
-        for (j, &b) in registered.iter().enumerate().skip(i + 1) {
-            let count = counts.shared(a, b);
-            if count >= FEWEST_SHARED {
-                overlap.push((i, j, count));
-            }
-        }
-    }
     let rays_a_point = total as f64 / counts.points.max(1) as f64;
     let (frame, anchor, mut warnings) = frame_words(basis);
     if rays_a_point < FEW_RAYS {
@@ -167,7 +152,7 @@ pub(in super::super) fn report(
         cameras,
         photos,
         left_out,
-        overlap,
+        overlap: counts.overlap(&registered),
         warnings,
     }
 }
@@ -206,6 +191,29 @@ impl RayCounts {
 
     fn shared(&self, photo: usize, other: usize) -> usize {
         self.shared[photo * self.rays.len() + other]
+    }
+
+    /// How many other photographs overlap with one.
+    fn partners(&self, photo: usize, registered: &[usize]) -> usize {
+        let others = registered.iter().filter(|&&other| other != photo);
+        others
+            .filter(|&&other| self.shared(photo, other) >= FEWEST_SHARED)
+            .count()
+    }
+
+    /// The pairs that overlap, by their places among the registered photographs, and how many
+    /// points they share.
+    fn overlap(&self, registered: &[usize]) -> Vec<(usize, usize, usize)> {
+        let mut overlap = Vec::new();
+        for (i, &a) in registered.iter().enumerate() {
+            for (j, &b) in registered.iter().enumerate().skip(i + 1) {
+                let count = self.shared(a, b);
+                if count >= FEWEST_SHARED {
+                    overlap.push((i, j, count));
+                }
+            }
+        }
+        overlap
     }
 }
 

@@ -157,20 +157,18 @@ pub(crate) fn read_shots(
                 (0, _) | (_, 0) => camera.size(),
                 size => size,
             };
-            Ok((size, camera.k(path, size)?, camera))
+            // Here the translation is the projection centre itself.
+            let r = rotation_from_axis_angle(&Vector3::from(shot.rotation)).into_inner();
+            let center = Point3::from(shot.translation);
+            Ok(Orientation {
+                distortion: camera.distortion(),
+                size: Some(size),
+                ..pinhole(&shot.filename, path, camera.k(path, size)?, r, center)
+            })
         });
         match read {
             Err(reason) => left_out.add(&shot.filename, &reason),
-            Ok((size, k, camera)) => {
-                // Here the translation is the projection centre itself.
-                let r = rotation_from_axis_angle(&Vector3::from(shot.rotation)).into_inner();
-                let center = Point3::from(shot.translation);
-                found.push(Orientation {
-                    distortion: camera.distortion(),
-                    size: Some(size),
-                    ..pinhole(&shot.filename, path, k, r, center)
-                });
-            }
+            Ok(orientation) => found.push(orientation),
         }
     }
     for (name, count) in guessed {

@@ -181,22 +181,9 @@ impl<'a, 'b, 'c> Chunk<'a, 'b, 'c> {
             slaves += usize::from(from_master.is_some());
             posed.push(self.posed(node, transform, from_master, lens)?);
         }
-        let mut warn = |what: &str| warnings.push(format!("{what} ({})", self.place()));
-        if !disabled.is_empty() {
-            let names = listed(&disabled);
-            warn(&format!("disabled cameras are left out: {names}"));
-        }
-        if !unknown.is_empty() {
-            let names = listed(&unknown);
-            warn(&format!(
-                "cameras of a rig are left out, since their sensors state no rotation and location towards the master: {names}"
-            ));
-        }
-        if slaves > 0 {
-            warn(&format!(
-                "{slaves} cameras of a rig stand at their masters, with the offset of their sensors"
-            ));
-        }
+        let said = words_of_cameras(&disabled, &unknown, slaves);
+        let place = self.place();
+        warnings.extend(said.into_iter().map(|what| format!("{what} ({place})")));
         Ok(self.in_one_frame(posed, warnings))
     }
 
@@ -296,6 +283,28 @@ impl<'a, 'b, 'c> Chunk<'a, 'b, 'c> {
         let same = posed.into_iter().filter(|(_, of)| *of == kept);
         same.map(|(orientation, _)| orientation).collect()
     }
+}
+
+/// What is to be said of cameras that are disabled, of those of a rig whose offset is unknown, and
+/// of those of a rig that are placed by it.
+fn words_of_cameras(disabled: &[&str], unknown: &[&str], slaves: usize) -> Vec<String> {
+    let mut said = Vec::new();
+    if !disabled.is_empty() {
+        let names = listed(disabled);
+        said.push(format!("disabled cameras are left out: {names}"));
+    }
+    if !unknown.is_empty() {
+        let names = listed(unknown);
+        said.push(format!(
+            "cameras of a rig are left out, since their sensors state no rotation and location towards the master: {names}"
+        ));
+    }
+    if slaves > 0 {
+        said.push(format!(
+            "{slaves} cameras of a rig stand at their masters, with the offset of their sensors"
+        ));
+    }
+    said
 }
 
 impl Sensor {

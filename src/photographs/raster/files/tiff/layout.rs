@@ -92,10 +92,8 @@ impl Layout {
             (problem, "copy or convert it again")
         };
         let number = |tag: u16, default: u64| directory.number(tag).unwrap_or(default);
-        let extent = |tag: u16| directory.number(tag).and_then(|v| u32::try_from(v).ok());
-        let size = extent(tags::IMAGE_WIDTH).zip(extent(tags::IMAGE_LENGTH));
-        let size = size.filter(|&(w, h)| w > 0 && h > 0);
-        let (width, height) = size.ok_or_else(|| missing("its width and height"))?;
+        let (width, height) =
+            stated_size(directory).ok_or_else(|| missing("its width and height"))?;
         let compression = Compression::new(number(tags::COMPRESSION, 1)).map_err(|name| {
             unread(format!(
                 "its compression is {name}, which is not read in a TIFF"
@@ -122,23 +120,17 @@ impl Layout {
         if is_jpeg && bits != 8 {
             return Err(unread(format!("it is compressed as JPEG of {bits} bits")));
         }
-        let predictor = number(tags::PREDICTOR, 1);
-        let predicted = match (compression.has_predictor(), predictor) {
-            (false, _) | (true, 1) => false,
-            (true, 2) => true,
-            _ => return Err(unread(format!("its predictor is number {predictor}"))),
-        };
+        let predicted = is_predicted(directory, &compression).map_err(unread)?;
         let (used, bands) = used_bands(directory, &colours, needed, samples);
         let is_planar = number(tags::PLANAR_CONFIGURATION, 1) == 2 && samples > 1;
         let colours = match (colours, used) {
             (Colours::Grey, 3) => Colours::Rgb,
+            (Colours::YCbCr, _) if is_planar => {
+                let problem = "its bands Y, Cb and Cr stand by themselves";
+                return Err(unread(problem.to_owned()));
+            }
             (colours, _) => colours,
         };
-        if is_planar && colours == Colours::YCbCr {
-            return Err(unread(
-                "its bands Y, Cb and Cr stand by themselves".to_owned(),
-            ));
-        }
         let mut layout = Self {
             size: (width, height),
             orientation: u8::try_from(number(tags::ORIENTATION, 1)).unwrap_or(1),
@@ -247,6 +239,25 @@ impl Layout {
     /// Samples of a pixel within a strip or tile.
     pub(super) fn samples_of_a_chunk(&self) -> usize {
         if self.is_planar { 1 } else { self.samples }
+    }
+}
+
+fn stated_size(directory: &Directory) -> Option<(u32, u32)> {
+    let extent = |tag: u16| directory.number(tag).and_then(|v| u32::try_from(v).ok());
+    let size = extent(tags::IMAGE_WIDTH).zip(extent(tags::IMAGE_LENGTH));
+    size.filter(|&(w, h)| w > 0 && h > 0)
+}
+
+/// Are samples stored as differences to the one before?
+fn is_predicted(
+    directory: &Directory,
+    compression: &Compression,
+) -> std::result::Result<bool, String> {
+    let predictor = directory.number(tags::PREDICTOR).unwrap_or(1);
+    match (compression.has_predictor(), predictor) {
+        (false, _) | (true, 1) => Ok(false),
+        (true, 2) => Ok(true),
+        _ => Err(format!("its predictor is number {predictor}")),
     }
 }
 
