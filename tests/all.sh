@@ -69,6 +69,7 @@ clippy_wasm32() {
 }
 
 step format check formatted
+step economy check "${PYTHON:-python3}" tests/evaluation/economy.py
 start clippy-wasm32 clippy_wasm32
 step clippy-native check cargo clippy --all-targets --quiet -- -D warnings
 step typecheck check www typecheck

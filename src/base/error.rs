@@ -62,8 +62,9 @@ impl Error {
 /// Names and contents of files may hold anything: control characters become blanks, long texts are
 /// shortened.
 fn one_line(text: &str) -> String {
-    const MOST: usize = 600;
-    let mut line: String = (text.chars().take(MOST))
+    // Assumption: some ten lines of a terminal.
+    const MOST_CHARACTERS: usize = 600;
+    let mut line: String = (text.chars().take(MOST_CHARACTERS))
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect();
     if line.len() < text.len() {
@@ -72,5 +73,28 @@ fn one_line(text: &str) -> String {
     line
 }
 
+/// Names in a row; long lists are cut short.
+pub(crate) fn listed(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    // Assumption: whoever reads eight knows what kind they are.
+    const MOST_NAMES: usize = 8;
+    let names: Vec<String> = names.into_iter().map(|n| n.as_ref().to_owned()).collect();
+    let mut text = names[..names.len().min(MOST_NAMES)].join(", ");
+    if names.len() > MOST_NAMES {
+        text.push_str(&format!(" and {} more", names.len() - MOST_NAMES));
+    }
+    text
+}
+
 /// Result of reading.
 pub type Result<T> = std::result::Result<T, Error>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lists_are_cut() {
+        assert_eq!(listed(["a", "b"].iter()), "a, b");
+        assert!(listed((0..20).map(|i| i.to_string())).ends_with("7 and 12 more"));
+    }
+}

@@ -25,9 +25,16 @@ pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     (sin(angle), cos(angle))
 }
 
+/// Median length of a vector of two normal components, in their standard deviation (Rayleigh).
+pub(crate) const RAYLEIGH_MEDIAN: f64 = 1.177_41;
+
+/// Standard deviation of a normal distribution over the median of its absolute deviations.
+pub(crate) const SIGMA_OVER_MEDIAN: f64 = 1.4826;
+
 /// Density of the normal distribution about 0; as good as nothing beyond thirty standard
 /// deviations.
 pub(crate) fn normal_density(x: f64, sigma: f64) -> f64 {
+    /// Its integral over t.
     const SQRT_TWO_PI: f64 = 2.506_628_274_631_000_2;
     let t = smaller((x / sigma).abs(), 30.0);
     exp(-0.5 * t * t) / (sigma * SQRT_TWO_PI)

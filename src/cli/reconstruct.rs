@@ -67,6 +67,28 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
             inspection.peak_mb
         );
     }
+    let opened = OpenedScene {
+        files: input,
+        options,
+        params,
+        seen,
+    };
+    reconstruct_whole(args, opened, start)
+}
+
+/// Reconstructs a scene that is loaded as one.
+fn reconstruct_whole(
+    args: &ReconstructArgs,
+    opened: OpenedScene,
+    start: Instant,
+) -> Result<(), Failure> {
+    let OpenedScene {
+        files: mut input,
+        options,
+        params,
+        seen,
+    } = opened;
+    let refuse = |e: ridgeline::Error| refusal(&e, &seen);
     let planned = PlannedScene::new(&mut input, &options).map_err(refuse)?;
     let scene = planned.load(&input.files).map_err(refuse)?;
     eprintln!("{seen}");
@@ -80,14 +102,7 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     let seconds = run_stages(&mut run);
     let is_empty = (run.results().roof_model()).is_none_or(|model| model.buildings.is_empty());
     if is_doubtful && is_empty {
-        let error = ridgeline::Error::Scene {
-            problem: "the images hardly agree with their orientation, and show no roof with it"
-                .to_owned(),
-            advice: "check that images and orientation belong together (names, folders, the same \
-                     flight), or have the empty model written nevertheless (--ignore-check)"
-                .to_owned(),
-        };
-        return Err(refuse(error));
+        return Err(refuse(shows_nothing()));
     }
     let written = run.files(&seconds);
     files::write_all(&args.out, &written)?;
@@ -103,6 +118,17 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         table::summary(&run, load_seconds, &seconds, &written, &args.out)
     );
     Ok(())
+}
+
+/// The refusal to write an empty model of images that hardly agree with their orientation.
+fn shows_nothing() -> ridgeline::Error {
+    ridgeline::Error::Scene {
+        problem: "the images hardly agree with their orientation, and show no roof with it"
+            .to_owned(),
+        advice: "check that images and orientation belong together (names, folders, the same \
+                 flight), or have the empty model written nevertheless (--ignore-check)"
+            .to_owned(),
+    }
 }
 
 /// Do the images hardly agree with the orientation, though no mistake explains it?

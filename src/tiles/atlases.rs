@@ -2,7 +2,7 @@
 
 /// Longest side of the joined atlas, pixels. Assumption: what graphics processors take as one
 /// texture; a JPEG may have 65535.
-const LONGEST_PX: u32 = 16384;
+const LONGEST_SIDE_PX: u32 = 16384;
 
 /// Where the atlases stand in the joined one.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ impl AtlasPlaces {
     pub(super) fn of(sizes: &[[u32; 2]]) -> Self {
         (1..)
             .map(|reduction| Self::reduced(sizes, reduction))
-            .find(|places| places.size.iter().all(|side| *side <= LONGEST_PX))
+            .find(|places| places.size.iter().all(|side| *side <= LONGEST_SIDE_PX))
             .expect("reduced far enough, all are nothing")
     }
 
@@ -29,7 +29,7 @@ impl AtlasPlaces {
         let sizes = || sizes.iter().map(|size| size.map(|side| side / reduction));
         let area: f64 = sizes().map(|[w, h]| f64::from(w) * f64::from(h)).sum();
         let widest = sizes().map(|[w, _]| w).max().unwrap_or(0);
-        let width = widest.max((area.sqrt().ceil() as u32).min(LONGEST_PX));
+        let width = widest.max((area.sqrt().ceil() as u32).min(LONGEST_SIDE_PX));
         let [mut column, mut row, mut height] = [0, 0, 0];
         let mut right = 0;
         let corner = |[w, h]: [u32; 2]| {
@@ -76,7 +76,7 @@ mod tests {
         // Below each other they would be 800000 pixels high.
         let places = AtlasPlaces::of(&[[1024, 2000]; 400]);
         assert_eq!(places.reduction, 2);
-        assert!(places.size.iter().all(|side| *side <= LONGEST_PX));
+        assert!(places.size.iter().all(|side| *side <= LONGEST_SIDE_PX));
         let [w, h] = places.size;
         assert!(w.abs_diff(h) < 2000, "{w} x {h}");
     }

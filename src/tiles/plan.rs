@@ -488,6 +488,7 @@ fn planned_cell(files: &[InputFile], options: &LoadOptions, cell: &Cell) -> Plan
 
 /// The refusal of parts that are not there.
 fn missing_parts(missing: &[u32], first: u32) -> Error {
+    // Assumption: whoever reads ten knows which machine they were lost on.
     const MOST_NAMED: usize = 10;
     let path = |tile: &u32| {
         PartKey {

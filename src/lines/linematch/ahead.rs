@@ -40,9 +40,10 @@ struct Made {
 }
 
 /// So many bundles a worker are completed at a time, because they take unequally long.
-const EACH: usize = 4;
-/// So many bundles are looked through for each that is completed.
-const SEARCHED: usize = 16;
+const BUNDLES_PER_WORKER: usize = 4;
+/// So many bundles are looked through for each that is completed. Assumption: few of those in a row
+/// have no segment in common.
+const LOOKED_THROUGH_PER_BUNDLE: usize = 16;
 
 impl Ahead {
     /// What comes of a bundle whose turn it is, while `taken` names the segments of other lines.
@@ -65,11 +66,14 @@ impl Ahead {
         }
         let wanted = match execution::workers() {
             1 => 1,
-            workers => workers * EACH,
+            workers => workers * BUNDLES_PER_WORKER,
         };
         let mut used: BTreeSet<SegmentRef> = seeds.iter().copied().collect();
         let mut side_by_side = vec![hypothesis];
-        for other in next.take((wanted - 1) * SEARCHED).flatten() {
+        for other in next
+            .take((wanted - 1) * LOOKED_THROUGH_PER_BUNDLE)
+            .flatten()
+        {
             if side_by_side.len() == wanted {
                 break;
             }

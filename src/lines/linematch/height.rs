@@ -21,14 +21,17 @@ use crate::photographs::raster::{Gray, gaussian_blur};
 const SEGMENTS: usize = 360;
 /// Samples of a patch are this far apart, px, in a 7 x 7 grid.
 const STRIDE_PX: f64 = 2.0;
-/// Step along the epipolar line, px.
-const STEP_PX: f64 = 2.0;
-/// Least correlation in the nearest view of a depth that the others test.
-const CANDIDATE: f64 = 0.6;
-/// Least mean correlation over the other views.
-const ACCEPTED: f64 = 0.75;
-/// Least margin of the best depth over any other.
-const UNIQUE: f64 = 0.1;
+/// Step along the epipolar line, px. Assumption: a window of correlation is as wide that a maximum
+/// is not stepped over.
+const EPIPOLAR_STEP_PX: f64 = 2.0;
+/// Least correlation in the nearest view of a depth that the others test. Assumption: lower than
+/// [`ACCEPTED_CORRELATION`], because one view may be the worst.
+const CANDIDATE_CORRELATION: f64 = 0.6;
+/// Least mean correlation over the other views. Assumption.
+const ACCEPTED_CORRELATION: f64 = 0.75;
+/// Least margin of the best depth over any other. Assumption: repeated texture correlates nearly as
+/// well elsewhere.
+const CORRELATION_MARGIN: f64 = 0.1;
 /// A height counts when this many others lie within [`NEIGHBOUR_M`]...
 const MIN_NEIGHBOURS: usize = 4;
 /// ... metres of it.
@@ -129,7 +132,9 @@ fn sweep(scene: &Scene, images: &[Gray], view: ViewId, x: &Point2<f64>) -> Optio
         .map(|d| score(*first, *d).unwrap_or(-1.0))
         .collect();
     let mut maxima: Vec<usize> = (1..along.len().saturating_sub(1))
-        .filter(|&i| along[i] >= CANDIDATE && along[i] >= along[i - 1] && along[i] > along[i + 1])
+        .filter(|&i| {
+            along[i] >= CANDIDATE_CORRELATION && along[i] >= along[i - 1] && along[i] > along[i + 1]
+        })
         .collect();
     maxima.sort_by(|&a, &b| along[b].total_cmp(&along[a]).then(a.cmp(&b)));
     maxima.truncate(12);
@@ -158,7 +163,8 @@ fn sweep(scene: &Scene, images: &[Gray], view: ViewId, x: &Point2<f64>) -> Optio
     confirmed.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (best, depth) = *confirmed.first()?;
     let second = confirmed.get(1).map_or(0.0, |c| c.0);
-    (best >= ACCEPTED && best - second >= UNIQUE).then(|| (camera.center + camera.ray(x) * depth).z)
+    (best >= ACCEPTED_CORRELATION && best - second >= CORRELATION_MARGIN)
+        .then(|| (camera.center + camera.ray(x) * depth).z)
 }
 
 /// The other views, nearest projection centre first.
@@ -170,8 +176,8 @@ fn nearest_views(scene: &Scene, view: ViewId) -> Vec<ViewId> {
     others
 }
 
-/// Depths along the ray of `x` (metres) whose images in `second` are [`STEP_PX`] apart, from far to
-/// near or the reverse, as far as `second` sees the ray.
+/// Depths along the ray of `x` (metres) whose images in `second` are [`EPIPOLAR_STEP_PX`] apart,
+/// from far to near or the reverse, as far as `second` sees the ray.
 fn epipolar_depths(first: &Camera, second: &Camera, x: &Point2<f64>) -> Vec<f64> {
     let line = fundamental(first, second) * Vector3::new(x.x, x.y, 1.0);
     let normal = line.xy();
@@ -183,10 +189,10 @@ fn epipolar_depths(first: &Camera, second: &Camera, x: &Point2<f64>) -> Vec<f64>
     let centre = Point2::new(0.5 * width, 0.5 * height);
     let offset = (normal.dot(&centre.coords) + line.z) / normal.norm();
     let foot = centre - normal.normalize() * offset;
-    let half = (0.5 * (width + height) / STEP_PX) as i32;
+    let half = (0.5 * (width + height) / EPIPOLAR_STEP_PX) as i32;
     let (center, ray) = (first.center, first.ray(x));
     (-half..=half)
-        .map(|k| foot + along * (f64::from(k) * STEP_PX))
+        .map(|k| foot + along * (f64::from(k) * EPIPOLAR_STEP_PX))
         .filter(|p| second.contains(p, 8.0))
         .filter_map(|p| {
             // Nearest approach of the two rays.

@@ -76,17 +76,8 @@ pub fn match_lines(
 ) -> Sharded<(Vec<LineTrack>, MatchTrace)> {
     let mut trace = MatchTrace::default();
     let prepared = PreparedSegments::new(scene, segments);
-    let estimated = match params.z_range_m {
-        Some(z) => Some(z),
-        None => height::height_range(scene, &prepared)?.map(|range| {
-            trace.heights_m = range.heights;
-            range.z
-        }),
-    };
-    let z_range = estimated.unwrap_or_else(|| height::any_height(scene));
-    trace.z_range_m = Some(z_range);
+    let z_range = z_range(scene, &prepared, params, &mut trace)?;
     trace.view_pairs = view_selection::select_view_pairs(scene, z_range, params);
-
     let compatibility = Compatibility {
         contrast: params.same_contrast,
         kind: true,
@@ -113,21 +104,16 @@ pub fn match_lines(
     // With few views each of them is needed, however it shows a line.
     let few = scene.views.len() <= params.min_views;
     if few && !search.selection.lines.is_empty() {
-        let compatibility = Compatibility {
-            contrast: false,
-            kind: false,
+        let compatibility = Compatibility::ANY;
+        let scope = PairScope {
+            compatibility,
+            ..scope
         };
-        search.run(
-            &PairScope {
-                compatibility,
-                ..scope
-            },
-            &MatchContext {
-                compatibility,
-                ..context
-            },
-            Pass::Second,
-        )?;
+        let context = MatchContext {
+            compatibility,
+            ..context
+        };
+        search.run(&scope, &context, Pass::Second)?;
     }
     let MatchSearch {
         pairs,
@@ -138,6 +124,25 @@ pub fn match_lines(
     trace.record(segments, &pairs, &bundles, &selection);
     let tracks = selection.lines.into_iter().map(LineTrack::from).collect();
     Ok((tracks, trace))
+}
+
+/// The heights between which lines are sought, metres: stated, estimated, or any.
+fn z_range(
+    scene: &Scene,
+    prepared: &PreparedSegments,
+    params: &MatchParams,
+    trace: &mut MatchTrace,
+) -> Sharded<[f64; 2]> {
+    let estimated = match params.z_range_m {
+        Some(z) => Some(z),
+        None => height::height_range(scene, prepared)?.map(|range| {
+            trace.heights_m = range.heights;
+            range.z
+        }),
+    };
+    let z_range = estimated.unwrap_or_else(|| height::any_height(scene));
+    trace.z_range_m = Some(z_range);
+    Ok(z_range)
 }
 
 /// All hypotheses and their outcomes.

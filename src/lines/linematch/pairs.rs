@@ -140,11 +140,8 @@ impl PairScope<'_> {
         };
         let strip = LineStrip::reference(first.channel(channel).0, &frame);
         let mut pairs = Vec::new();
-        for (_, other) in self
-            .view_pairs
-            .iter()
-            .filter(|(view, _)| *view == name.view)
-        {
+        let partners = self.view_pairs.iter().filter(|(v, _)| *v == name.view);
+        for (_, other) in partners {
             let camera = self.scene.camera(*other);
             let Some(beam) = epipolar_beam(&first.camera, &geometry.segment, camera, self.z_range)
             else {

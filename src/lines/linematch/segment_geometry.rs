@@ -29,6 +29,12 @@ pub(super) struct Compatibility {
 }
 
 impl Compatibility {
+    /// Steps either way, in grey values or in colour.
+    pub(super) const ANY: Self = Self {
+        contrast: false,
+        kind: false,
+    };
+
     /// May segments of these kinds show one line?
     pub(super) fn allows(self, a: SegmentKind, b: SegmentKind) -> bool {
         a == b || (!self.kind && a.is_step() == b.is_step())

@@ -14,7 +14,7 @@ use super::nview::{CompletedLine, MatchContext, MatchRejection};
 use super::pairs::{SegmentPair, SegmentPairs};
 use super::pass::Pass;
 use super::segment_geometry::SegmentRef;
-use super::triples::TripleBundle;
+use super::triples::{TripleBundle, Verification};
 use crate::base::execution::{SILENT, Sharded, reached, sharded_map};
 use crate::lines::lines2d::ImageSegment;
 
@@ -64,14 +64,10 @@ pub(super) fn winner_takes_all(
         }
         // Segments that other lines have taken meanwhile do not count: it is queued again with the
         // rest.
+        let free = |v: &Verification| selection.owner(v.segment).is_none();
         let rest = TripleBundle {
             pair: bundle.pair,
-            verified: bundle
-                .verified
-                .iter()
-                .copied()
-                .filter(|v| selection.owner(v.segment).is_none())
-                .collect(),
+            verified: bundle.verified.iter().copied().filter(free).collect(),
         };
         if rest.verified.len() < bundle.verified.len() {
             let evidence = evidence(context, pair, &rest);

@@ -48,8 +48,10 @@ fn in_all_directions(
     count: usize,
     baseline: impl Fn(&ViewId) -> Vector2<f64>,
 ) -> Vec<ViewId> {
+    // Of half a turn, because opposite baselines measure alike. Assumption: along, across and both
+    // diagonals of a flight.
     const SECTORS: usize = 4;
-    const WIDTH: f64 = std::f64::consts::PI / SECTORS as f64;
+    const SECTOR_WIDTH: f64 = std::f64::consts::PI / SECTORS as f64;
     let angle = |v: &ViewId| {
         let b = baseline(v);
         math::atan2(b.y, b.x)
@@ -60,7 +62,7 @@ fn in_all_directions(
     let mut met = [0; SECTORS];
     let mut ranked: Vec<(usize, ViewId)> = (nearest_first.into_iter())
         .map(|v| {
-            let sector = ((angle(&v) - first) / WIDTH).round() as i64;
+            let sector = ((angle(&v) - first) / SECTOR_WIDTH).round() as i64;
             let met = &mut met[sector.rem_euclid(SECTORS as i64) as usize];
             *met += 1;
             (*met, v)

@@ -26,16 +26,17 @@ pub(crate) const PIECE_PX: f64 = 5.0;
 /// Distance from the prediction up to which an edge is sought, px. Assumption: half the least
 /// distance of two edges that a detector with a smoothing of one pixel keeps apart.
 const REACH_PX: f64 = 1.5;
-/// Step of the profile, px.
-const STEP_PX: f64 = 0.5;
+/// Step of the profile, px: two samples a pixel.
+const PROFILE_STEP_PX: f64 = 0.5;
 /// Half the base of the derivative, in steps: one pixel.
 const BASE: usize = 2;
 /// Samples of the profile: the reach, a neighbour for the maximum test and the base on either side.
-const SAMPLES: usize = STEPS + 2 * BASE;
-/// Steps of the profile.
-const STEPS: usize = 2 * (3 + 1) + 1;
-/// Least step of a piece against its own noise, standard deviations.
-const SIGNIFICANT: f64 = 4.0;
+const SAMPLES: usize = PROFILE_STEPS + 2 * BASE;
+/// Steps of the profile: three of the reach and a neighbour on either side, and the middle.
+const PROFILE_STEPS: usize = 2 * (3 + 1) + 1;
+/// Least response at the edge of a piece, in standard deviations of the piece's noise. Assumption:
+/// of some ten places that are looked at none is so high by chance.
+const EDGE_SIGMAS: f64 = 4.0;
 /// Offset from the robust line beyond which a piece does not belong to the edge, px.
 const INLIER_PX: f64 = 0.6;
 /// Scale of the robust loss, px.
@@ -140,7 +141,7 @@ fn measure_piece(
             // Lanes behind the last sample repeat it.
             let places: [Point2<f64>; 8] = std::array::from_fn(|lane| {
                 let k = (8 * first + lane).min(SAMPLES - 1);
-                let across = (k as f64 - 0.5 * (SAMPLES - 1) as f64) * STEP_PX;
+                let across = (k as f64 - 0.5 * (SAMPLES - 1) as f64) * PROFILE_STEP_PX;
                 centre + normal * across
             });
             let samples =
@@ -158,7 +159,7 @@ fn measure_piece(
     kind.channel().to_linear_light(&mut light);
     let filter = Filter::of(kind, reversed_contrast);
     let [response, light] = [profile, light].map(|p| filter.response(&p));
-    let least = SIGNIFICANT * noise * filter.gain() / (rows as f64).sqrt();
+    let least = EDGE_SIGMAS * noise * filter.gain() / (rows as f64).sqrt();
     Some(ProfilePiece {
         along,
         offset: nearest_edge(&response, least).and_then(|k| offset(&light, k)),
@@ -181,7 +182,7 @@ impl Filter {
     }
 
     /// Along a profile.
-    fn response(self, profile: &[f64; SAMPLES]) -> [f64; STEPS] {
+    fn response(self, profile: &[f64; SAMPLES]) -> [f64; PROFILE_STEPS] {
         let [before, at, behind] = self.0;
         std::array::from_fn(|k| {
             before * profile[k] + at * profile[k + BASE] + behind * profile[k + 2 * BASE]
@@ -196,22 +197,22 @@ impl Filter {
 
 /// Index of the edge nearest to the middle of a profile: a maximum of the response of at least
 /// half the largest one.
-fn nearest_edge(response: &[f64; STEPS], least: f64) -> Option<usize> {
-    let inner = 1..STEPS - 1;
+fn nearest_edge(response: &[f64; PROFILE_STEPS], least: f64) -> Option<usize> {
+    let inner = 1..PROFILE_STEPS - 1;
     let largest = response[inner.clone()].iter().copied().fold(0.0, f64::max);
     inner
         .filter(|&k| response[k] >= response[k - 1] && response[k] > response[k + 1])
         .filter(|&k| response[k] >= least.max(0.5 * largest))
-        .min_by_key(|&k| k.abs_diff(STEPS / 2))
+        .min_by_key(|&k| k.abs_diff(PROFILE_STEPS / 2))
 }
 
 /// Offset of an edge, px, by the maximum of the light's response at or beside its index.
-fn offset(light: &[f64; STEPS], edge: usize) -> Option<f64> {
-    let near = edge.max(2) - 1..=(edge + 1).min(STEPS - 2);
+fn offset(light: &[f64; PROFILE_STEPS], edge: usize) -> Option<f64> {
+    let near = edge.max(2) - 1..=(edge + 1).min(PROFILE_STEPS - 2);
     let k = near.max_by(|&i, &j| light[i].total_cmp(&light[j]))?;
     let bend = light[k - 1] - 2.0 * light[k] + light[k + 1];
     let shift = 0.5 * (light[k - 1] - light[k + 1]) / bend.min(-1e-12);
-    let offset = (k as f64 + shift.clamp(-1.0, 1.0) - (STEPS / 2) as f64) * STEP_PX;
+    let offset = (k as f64 + shift.clamp(-1.0, 1.0) - (PROFILE_STEPS / 2) as f64) * PROFILE_STEP_PX;
     (offset.abs() <= REACH_PX).then_some(offset)
 }
 

@@ -7,6 +7,8 @@
 //! 147.1 147.2 ...
 //! ```
 
+use std::iter::Peekable;
+
 use super::height_grid::HeightGrid;
 use super::refusal::refusal;
 use crate::base::error::{Error, Result};
@@ -52,14 +54,58 @@ impl Header {
 
 pub(super) fn read(file: &InputFile) -> Result<HeightGrid> {
     let text = file.text();
-    let refuse = |line: usize, problem: String, expected: &str| Error::Line {
+    let mut lines = text.lines().enumerate().peekable();
+    let header = read_header(file, &mut lines)?;
+    let missing = |name: &str| {
+        let problem = format!("the header states no {name}");
+        refuse(file, 1, problem, "the header of an ASCII grid")
+    };
+    let count = |stated: Option<f64>, name: &str| {
+        let count = stated.ok_or_else(|| missing(name))?;
+        let is_count = (2.0..1e6).contains(&count) && count.fract() == 0.0;
+        let problem = || format!("{name} is {count}");
+        is_count
+            .then_some(count as usize)
+            .ok_or_else(|| refuse(file, 1, problem(), "a whole number from 2"))
+    };
+    let (columns, rows) = (
+        count(header.columns, "ncols")?,
+        count(header.rows, "nrows")?,
+    );
+    let cell = [
+        header.cell[0].ok_or_else(|| missing("cellsize"))?,
+        header.cell[1].ok_or_else(|| missing("cellsize"))?,
+    ];
+    let (x, x_is_center) = header.x.ok_or_else(|| missing("xllcorner"))?;
+    let (y, y_is_center) = header.y.ok_or_else(|| missing("yllcorner"))?;
+    let heights = read_heights(file, lines, [columns, rows], text.lines().count())?;
+    let corner =
+        |at: f64, is_center: bool, cell: f64| at + if is_center { 0.0 } else { 0.5 * cell };
+    let first = [
+        corner(x, x_is_center, cell[0]),
+        corner(y, y_is_center, cell[1]) + (rows - 1) as f64 * cell[1],
+    ];
+    // Heights are read as they are written: the value that stands for none as well.
+    let no_data = header.no_data.unwrap_or(-9999.0) as f32;
+    HeightGrid::new(first, cell, [columns, rows], heights, Some(no_data))
+        .map_err(|problem| refusal(&file.path, &problem, "give heights of the ground"))
+}
+
+fn refuse(file: &InputFile, line: usize, problem: String, expected: &str) -> Error {
+    Error::Line {
         file: file.path.clone(),
         line,
         problem,
         expected: expected.to_owned(),
-    };
+    }
+}
+
+/// Takes the lines of the header, and blank ones before and after it.
+fn read_header<'a>(
+    file: &InputFile,
+    lines: &mut Peekable<impl Iterator<Item = (usize, &'a str)>>,
+) -> Result<Header> {
     let mut header = Header::default();
-    let mut lines = text.lines().enumerate().peekable();
     while let Some((i, line)) = lines.peek().copied() {
         let mut words = line.split_whitespace();
         let Some(name) = words.next() else {
@@ -72,75 +118,45 @@ pub(super) fn read(file: &InputFile) -> Result<HeightGrid> {
         }
         let value = words.next().and_then(|word| word.parse().ok());
         let value: f64 = value.ok_or_else(|| {
-            refuse(
-                i + 1,
-                format!("'{name}' has no number"),
-                "a name and a number",
-            )
+            let problem = format!("'{name}' has no number");
+            refuse(file, i + 1, problem, "a name and a number")
         })?;
         header.take(name, value).ok_or_else(|| {
+            let problem = format!("'{name}' is no part of the header");
             let expected = "ncols, nrows, xllcorner, yllcorner, cellsize or NODATA_value";
-            refuse(
-                i + 1,
-                format!("'{name}' is no part of the header"),
-                expected,
-            )
+            refuse(file, i + 1, problem, expected)
         })?;
         lines.next();
     }
-    let missing = |name: &str| {
-        refuse(
-            1,
-            format!("the header states no {name}"),
-            "the header of an ASCII grid",
-        )
-    };
-    let count = |stated: Option<f64>, name: &str| {
-        let count = stated.ok_or_else(|| missing(name))?;
-        let is_count = (2.0..1e6).contains(&count) && count.fract() == 0.0;
-        is_count
-            .then_some(count as usize)
-            .ok_or_else(|| refuse(1, format!("{name} is {count}"), "a whole number from 2"))
-    };
-    let (columns, rows) = (
-        count(header.columns, "ncols")?,
-        count(header.rows, "nrows")?,
-    );
-    let cell = [
-        header.cell[0].ok_or_else(|| missing("cellsize"))?,
-        header.cell[1].ok_or_else(|| missing("cellsize"))?,
-    ];
-    let (x, x_is_center) = header.x.ok_or_else(|| missing("xllcorner"))?;
-    let (y, y_is_center) = header.y.ok_or_else(|| missing("yllcorner"))?;
+    Ok(header)
+}
+
+/// One height for every cell, of the lines below the header; `last` is the number of the last one.
+fn read_heights<'a>(
+    file: &InputFile,
+    lines: impl Iterator<Item = (usize, &'a str)>,
+    [columns, rows]: [usize; 2],
+    last: usize,
+) -> Result<Vec<f32>> {
     let wanted = columns * rows;
-    let last = text.lines().count();
     let expected = "one height for every cell";
     let mut heights: Vec<f32> = Vec::new();
     for (i, line) in lines {
         for word in line.split_whitespace() {
             let z = word.parse().map_err(|_| {
                 let problem = format!("'{word}' is no number");
-                refuse(i + 1, problem, "heights with a decimal point")
+                refuse(file, i + 1, problem, "heights with a decimal point")
             })?;
             if heights.len() == wanted {
                 let problem = format!("there are more than {columns} x {rows} heights");
-                return Err(refuse(i + 1, problem, expected));
+                return Err(refuse(file, i + 1, problem, expected));
             }
             heights.push(z);
         }
     }
     if heights.len() < wanted {
         let problem = format!("the file ends after {} of {wanted} heights", heights.len());
-        return Err(refuse(last, problem, expected));
+        return Err(refuse(file, last, problem, expected));
     }
-    let corner =
-        |at: f64, is_center: bool, cell: f64| at + if is_center { 0.0 } else { 0.5 * cell };
-    let first = [
-        corner(x, x_is_center, cell[0]),
-        corner(y, y_is_center, cell[1]) + (rows - 1) as f64 * cell[1],
-    ];
-    // Heights are read as they are written: the value that stands for none as well.
-    let no_data = header.no_data.unwrap_or(-9999.0) as f32;
-    HeightGrid::new(first, cell, [columns, rows], heights, Some(no_data))
-        .map_err(|problem| refusal(&file.path, &problem, "give heights of the ground"))
+    Ok(heights)
 }

@@ -2,6 +2,7 @@
 
 use super::system::StatedSystem;
 
+/// Numbers of the keys.
 const MODEL_TYPE: u64 = 1024;
 const GEODETIC_CRS: u64 = 2048;
 const PROJECTED_CRS: u64 = 3072;

@@ -13,9 +13,10 @@ pub struct HeightGrid {
     heights: Vec<f32>,
 }
 
-/// Heights of the Earth's surface lie between these, metres.
-const LOWEST_M: f32 = -500.0;
-const HIGHEST_M: f32 = 9000.0;
+/// Heights of the Earth's surface lie between these, metres: the shore of the Dead Sea at some
+/// -430, Mount Everest at 8849.
+const LOWEST_HEIGHT_M: f32 = -500.0;
+const HIGHEST_HEIGHT_M: f32 = 9000.0;
 
 impl HeightGrid {
     /// A grid whose centre of the north-western cell, cells and heights these are; heights that are
@@ -42,7 +43,7 @@ impl HeightGrid {
         if known().next().is_none() {
             return Err("it holds no height at all".to_owned());
         }
-        if let Some(z) = known().find(|z| !(LOWEST_M..=HIGHEST_M).contains(z)) {
+        if let Some(z) = known().find(|z| !(LOWEST_HEIGHT_M..=HIGHEST_HEIGHT_M).contains(z)) {
             return Err(format!(
                 "it holds a height of {z}, which is none of the ground in metres"
             ));

@@ -81,14 +81,15 @@ pub fn rotation_from_yaw_pitch_roll(yaw: f64, pitch: f64, roll: f64) -> Rotation
 /// the matrix itself where it is a rotation as it stands, or none.
 pub(crate) fn without_rounding(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let deviation = (matrix * matrix.transpose() - Matrix3::identity()).amax();
-    let is_rounded = deviation > EXACT && deviation <= ROUNDED;
+    let is_rounded = deviation > EXACT_ROTATION && deviation <= ROUNDED_DEVIATION;
     if !is_rounded || matrix.determinant() < 0.0 {
         return *matrix;
     }
-    // Newton's iteration for the orthonormal polar factor doubles the correct digits each time.
-    const STEPS: usize = 4;
+    // Newton's iteration for the orthonormal polar factor doubles the correct digits each time: of
+    // three, as [`ROUNDED_DEVIATION`] allows, four make more than a number holds.
+    const NEWTON_STEPS: usize = 4;
     let mut r = *matrix;
-    for _ in 0..STEPS {
+    for _ in 0..NEWTON_STEPS {
         let Some(inverse) = r.try_inverse() else {
             return *matrix;
         };
@@ -98,11 +99,11 @@ pub(crate) fn without_rounding(matrix: &Matrix3<f64>) -> Matrix3<f64> {
 }
 
 /// Deviation of R R^T from the identity that is none.
-pub(crate) const EXACT: f64 = 1e-6;
+pub(crate) const EXACT_ROTATION: f64 = 1e-6;
 
 /// Deviation that rounding to four digits can leave; quaternions may miss a length of one by as
 /// much.
-const ROUNDED: f64 = 1e-3;
+const ROUNDED_DEVIATION: f64 = 1e-3;
 
 /// Omega, phi, kappa in radians of a rotation `cam_from_world`; the inverse of
 /// [`rotation_from_omega_phi_kappa`] for |phi| < pi/2.
@@ -216,7 +217,7 @@ mod tests {
             let found = without_rounding(&rounded);
             // What is exact enough stays as it is.
             let deviation = (found * found.transpose() - Matrix3::identity()).amax();
-            assert!(deviation < 1e-12 || found == rounded && deviation <= EXACT);
+            assert!(deviation < 1e-12 || found == rounded && deviation <= EXACT_ROTATION);
             assert!((found - exact).amax() < 1.0 / scale, "{scale}");
         }
         for wrong in [

@@ -190,6 +190,14 @@ pub fn detect(file: &InputFile) -> FileKind {
 
 fn by_content(text: &str) -> Option<FileKind> {
     let trimmed = text.trim_start_matches('\u{feff}').trim_start();
+    match trimmed.starts_with('<') {
+        true => by_tags(trimmed),
+        false => by_words(text, trimmed).or_else(|| by_lines(text)),
+    }
+}
+
+/// By what the file begins with, or a word at the beginning of any line.
+fn by_words(text: &str, trimmed: &str) -> Option<FileKind> {
     if trimmed.starts_with("# Bundle file") {
         return Some(FileKind::Bundler);
     }
@@ -212,9 +220,6 @@ fn by_content(text: &str) -> Option<FileKind> {
     if trimmed.starts_with("NVM_V3") {
         return Some(FileKind::Nvm);
     }
-    if trimmed.starts_with('<') {
-        return by_tags(trimmed);
-    }
     if trimmed.starts_with("fileName imageWidth imageHeight") {
         return Some(FileKind::Pix4d);
     }
@@ -224,6 +229,11 @@ fn by_content(text: &str) -> Option<FileKind> {
     {
         return Some(FileKind::PhotogrammetricCamera);
     }
+    None
+}
+
+/// By how many numbers its first lines hold.
+fn by_lines(text: &str) -> Option<FileKind> {
     let lines: Vec<TextLine> = data_lines("", text).take(HEAD_LINES).collect();
     let fields: Vec<Vec<&str>> = lines.iter().map(TextLine::fields).collect();
     if fields.len() == HEAD_LINES

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::base::math;
 
-/// Semi-major axis of WGS84, metres.
-const A_M: f64 = 6_378_137.0;
+/// Semi-major axis of WGS84 and of GRS80, metres.
+pub(super) const A_M: f64 = 6_378_137.0;
 
 /// Square of its first eccentricity.
 const E2: f64 = 6.694_379_990_141_316e-3;

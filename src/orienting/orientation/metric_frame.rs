@@ -94,8 +94,10 @@ fn is_geographic(c: &Point3<f64>) -> bool {
 fn is_small_spread(values: impl Iterator<Item = f64> + Clone) -> bool {
     let low = values.clone().fold(f64::INFINITY, f64::min);
     let high = values.fold(f64::NEG_INFINITY, f64::max);
-    const LEAST_M: f64 = 0.2;
-    high - low < LEAST_M
+    // In degrees that is 22 km. Assumption: no flight is as small in metres, none as large in
+    // degrees.
+    const LEAST_BASELINE_M: f64 = 0.2;
+    high - low < LEAST_BASELINE_M
 }
 
 #[cfg(test)]

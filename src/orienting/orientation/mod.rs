@@ -51,7 +51,7 @@ mod sets;
 mod transverse_mercator;
 mod unread;
 
-pub(crate) use angles::EXACT as EXACT_ROTATION;
+pub(crate) use angles::EXACT_ROTATION;
 pub use angles::{
     AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa,
     rotation_from_yaw_pitch_roll,

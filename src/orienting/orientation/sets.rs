@@ -180,18 +180,23 @@ pub fn orientation_sets(
     }
     sets.sort_by(|a, b| (a.format, &a.folder, &a.files).cmp(&(b.format, &b.folder, &b.files)));
     if sets.is_empty() {
-        let nearly: Vec<String> = (0..inputs.len())
-            .filter(|&i| kinds[i] == FileKind::Ignored)
-            .filter_map(|i| nearly_a_list(&inputs[i]))
-            .collect();
-        if !nearly.is_empty() {
-            // What a camera file lacks is the list that cannot be read.
-            let lacks_list = FileKind::PhotogrammetricExterior.describe();
-            incomplete.retain(|message| !message.contains(lacks_list));
-            incomplete.splice(0..0, nearly);
-        }
+        name_nearly_lists(inputs, kinds, &mut incomplete);
     }
     (sets, incomplete)
+}
+
+/// Puts first what nearly is a list of orientations, and why it is none.
+fn name_nearly_lists(inputs: &[InputFile], kinds: &[FileKind], incomplete: &mut Vec<String>) {
+    let nearly: Vec<String> = (0..inputs.len())
+        .filter(|&i| kinds[i] == FileKind::Ignored)
+        .filter_map(|i| nearly_a_list(&inputs[i]))
+        .collect();
+    if !nearly.is_empty() {
+        // What a camera file lacks is the list that cannot be read.
+        let lacks_list = FileKind::PhotogrammetricExterior.describe();
+        incomplete.retain(|message| !message.contains(lacks_list));
+        incomplete.splice(0..0, nearly);
+    }
 }
 
 /// Adds the files that a set's first files need besides.
@@ -240,8 +245,8 @@ fn add_files_beside(inputs: &[InputFile], kinds: &[FileKind], set: &mut Orientat
 
 /// Why a text that nearly is a list of orientations is none, with its line.
 fn nearly_a_list(input: &InputFile) -> Option<String> {
-    const MOST_BYTES: usize = 1 << 20;
     // A list of more than some thousand images is none that a scene is made of.
+    const MOST_BYTES: usize = 1 << 20;
     let text = input.start_as_text(MOST_BYTES)?;
     let error = photogrammetric::nearly_a_list(&input.path, &text)?;
     Some(error.to_string().replace("; ", ", "))

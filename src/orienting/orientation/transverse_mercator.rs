@@ -9,10 +9,8 @@
 //! phi = chi + sum_j delta_j sin 2j chi
 //! ```
 
+use super::geodesy::A_M;
 use crate::base::math::{asin, asinh, atan2, cos, cosh, ln, sin, sinh};
-
-/// Semi-major axis of WGS84 and of GRS80, metres.
-const A_M: f64 = 6_378_137.0;
 
 /// Third flattening of WGS84; that of GRS80 differs by 8e-12: 0.1 mm in latitude.
 const N: f64 = 1.679_220_386_383_705e-3;
@@ -25,7 +23,7 @@ pub(crate) struct TransverseMercator {
 }
 
 /// What all of them have: the scale on the central meridian, and its easting.
-const SCALE: f64 = 0.9996;
+const CENTRAL_SCALE: f64 = 0.9996;
 const FALSE_EASTING_M: f64 = 500_000.0;
 
 impl TransverseMercator {
@@ -75,7 +73,7 @@ impl TransverseMercator {
             xi += alpha * sin(twice * xi1) * cosh(twice * eta1);
             eta += alpha * cos(twice * xi1) * sinh(twice * eta1);
         }
-        let scale = SCALE * radius();
+        let scale = CENTRAL_SCALE * radius();
         [
             scale * eta + FALSE_EASTING_M,
             scale * xi + self.false_northing_m,
@@ -98,8 +96,8 @@ impl TransverseMercator {
             4279.0 / 630.0 * n4,
         ];
         let radius = radius();
-        let xi = (northing - self.false_northing_m) / (SCALE * radius);
-        let eta = (easting - FALSE_EASTING_M) / (SCALE * radius);
+        let xi = (northing - self.false_northing_m) / (CENTRAL_SCALE * radius);
+        let eta = (easting - FALSE_EASTING_M) / (CENTRAL_SCALE * radius);
         let (mut xi1, mut eta1) = (xi, eta);
         for (i, beta) in beta.iter().enumerate() {
             let twice = 2.0 * (i as f64 + 1.0);

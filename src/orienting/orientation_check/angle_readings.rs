@@ -2,7 +2,7 @@
 
 use super::epipolar_check::{EpipolarCheck, MIN_AGREEMENT};
 use super::view::CheckedView;
-use super::{MIN_GAIN, SMALLEST_PX};
+use super::{MIN_GAIN, SMALLEST_SIDE_PX};
 use crate::base::agreement::Agreement;
 use crate::orienting::orientation::AngleUnit;
 use crate::photographs::camera::Camera;
@@ -21,7 +21,7 @@ pub struct AngleReadings {
 /// Tries the readings of the angles; `None` where the files state the unit, or the images are too
 /// small to decide anything.
 pub fn try_angle_readings(views: &[CheckedView]) -> Option<AngleReadings> {
-    let is_small = |v: &CheckedView| v.camera.width.min(v.camera.height) < SMALLEST_PX;
+    let is_small = |v: &CheckedView| v.camera.width.min(v.camera.height) < SMALLEST_SIDE_PX;
     let first = views.first()?;
     let guess = (first.readings.iter())
         .find(|(_, r)| *r == first.camera.r)?

@@ -13,7 +13,7 @@ use crate::photographs::raster::Gray;
 
 /// Longer side of the reduced images, pixels: enough to tell points apart, few enough for a fast
 /// search.
-const REDUCED_PX: u32 = 300;
+const REDUCED_SIDE_PX: u32 = 300;
 
 /// Fewer points than this decide nothing.
 pub(crate) const MIN_POINTS: usize = 40;
@@ -44,7 +44,7 @@ impl EpipolarCheck {
     pub(super) fn new(views: &[CheckedView]) -> Self {
         let factor = |v: &CheckedView| {
             let longest = v.camera.width.max(v.camera.height);
-            ((longest + REDUCED_PX / 2) / REDUCED_PX).max(1) as usize
+            ((longest + REDUCED_SIDE_PX / 2) / REDUCED_SIDE_PX).max(1) as usize
         };
         let factors: Vec<usize> = views.iter().map(factor).collect();
         let grays = parallel::map(views, |i, v| v.gray.reduced(factors[i]));
@@ -133,6 +133,7 @@ fn agreement_of([points, on_line]: MatchCount) -> Agreement {
         0.0
     } else {
         let (n, share) = (points as f64, on_line as f64 / points as f64);
+        // Standard deviations of the bound: one of some forty true shares lies below it.
         const Z: f64 = 2.0;
         let spread = (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
         let low = (share + Z * Z / (2.0 * n) - Z * spread) / (1.0 + Z * Z / n);

@@ -48,6 +48,8 @@ impl HypothesisSearch {
         views: &[CheckedView],
         hypotheses: Vec<ErrorHypothesis>,
     ) -> Self {
+        // Hypotheses that are tested on all pairs. Assumption: the best one of all is among the
+        // four best of a few pairs.
         const FINALISTS: usize = 4;
         let few = few_pairs(check);
         let mut ranked: Vec<(Agreement, ErrorHypothesis, Vec<Camera>)> = (hypotheses.into_iter())
@@ -93,8 +95,10 @@ impl HypothesisSearch {
 
 /// Enough pairs of views for a first ranking.
 fn few_pairs(check: &EpipolarCheck) -> Vec<(usize, usize)> {
-    const ENOUGH: usize = 4;
-    let step = (check.pairs.len() / ENOUGH).max(1);
+    // Pairs at least, where there are as many. Assumption: one may show nothing, four show
+    // something.
+    const RANKING_PAIRS: usize = 4;
+    let step = (check.pairs.len() / RANKING_PAIRS).max(1);
     check.pairs.iter().copied().step_by(step).collect()
 }
 

@@ -47,15 +47,16 @@ use self::hypothesis_search::HypothesisSearch;
 use crate::base::agreement::Agreement;
 use crate::photographs::camera::Camera;
 
-/// In smaller images a line is too short to tell the right match from a wrong one, pixels.
-const SMALLEST_PX: u32 = 128;
+/// In images of a smaller shorter side a line is too short to tell the right match from a wrong
+/// one, pixels. Assumption.
+const SMALLEST_SIDE_PX: u32 = 128;
 
 /// Least gain in agreement from which on a hypothesis is accepted.
 const MIN_GAIN: f64 = 0.12;
 
 /// Checks views, and looks for the error where they do not agree.
 pub fn check_orientation(views: &[CheckedView]) -> OrientationCheck {
-    let is_small = |v: &CheckedView| v.camera.width.min(v.camera.height) < SMALLEST_PX;
+    let is_small = |v: &CheckedView| v.camera.width.min(v.camera.height) < SMALLEST_SIDE_PX;
     if views.iter().any(is_small) {
         return CheckFinding::Unknown(Agreement::default()).into();
     }
@@ -77,18 +78,16 @@ pub fn check_orientation(views: &[CheckedView]) -> OrientationCheck {
     if before.score >= MIN_AGREEMENT && !has_outliers {
         let matches = subpixel::matches(&check, views, &shifted);
         let shifts = shifts::shifts(&check, &matches, &stated, &coarse).unwrap_or_default();
-        let finding = match subpixel::half_pixel_offset(&check, views, &stated, &matches) {
-            Some((hypothesis, offsets_px)) => CheckFinding::Offset {
-                hypothesis,
-                agreement: before,
-                offsets_px,
-                words: hypothesis.describe(views),
-            },
-            None => CheckFinding::Sound(before),
-        };
+        let offset = subpixel::half_pixel_offset(&check, views, &stated, &matches);
+        let offset = offset.map(|(hypothesis, offsets_px)| CheckFinding::Offset {
+            hypothesis,
+            agreement: before,
+            offsets_px,
+            words: hypothesis.describe(views),
+        });
         return OrientationCheck {
             shifts,
-            ..finding.into()
+            ..offset.unwrap_or(CheckFinding::Sound(before)).into()
         };
     }
     let HypothesisSearch {

@@ -49,7 +49,7 @@ fn coarse_scale(factor: usize) -> ResidualScale {
 const COARSE_SHIFT: i32 = 4;
 
 /// Smaller shifts are left to the search at full resolution, pixels.
-const MIN_COARSE_PX: f64 = 1.5;
+const MIN_COARSE_SHIFT_PX: f64 = 1.5;
 
 /// Larger shifts are gross errors, which this adjustment does not model, pixels.
 const MAX_SHIFT_PX: f64 = 20.0;
@@ -59,7 +59,7 @@ impl ViewShift {
     pub fn is_significant(&self) -> bool {
         let [x, y] = self.shift_px;
         let length = (x * x + y * y).sqrt();
-        length > MIN_SHIFT_PX.max(SIGNIFICANT_SIGMAS * self.sigma_px)
+        length > MIN_SHIFT_PX.max(SHIFT_SIGMAS * self.sigma_px)
             && length < MAX_SHIFT_PX
             && self.after_px < self.before_px
     }
@@ -68,8 +68,9 @@ impl ViewShift {
 /// Least shift that matters: lines are found to about a tenth of a pixel.
 const MIN_SHIFT_PX: f64 = 0.15;
 
-/// Least significant shift, standard deviations.
-const SIGNIFICANT_SIGMAS: f64 = 4.0;
+/// Least significant shift, standard deviations. Assumption: views are many, and each could be
+/// named.
+const SHIFT_SIGMAS: f64 = 4.0;
 
 /// The shifts of all views; `None` where too little is matched. `coarse` are the shifts with which
 /// the matches were searched.
@@ -114,7 +115,7 @@ pub(crate) fn coarse_shifts(check: &EpipolarCheck, cameras: &[Camera]) -> Vec<Ve
     else {
         return none();
     };
-    let matters = |s: Vector2<f64>| (s.norm() > MIN_COARSE_PX).then_some(s);
+    let matters = |s: Vector2<f64>| (s.norm() > MIN_COARSE_SHIFT_PX).then_some(s);
     let found = adjustment.free_views().shifts;
     found
         .into_iter()

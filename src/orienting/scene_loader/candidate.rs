@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::assignment::{ImageCandidate, assign};
-use super::names::listed;
+use crate::base::error::listed;
 use crate::orienting::orientation::{Format, InputFile, Orientation, OrientationSet};
 
 /// One of the orientations that a scene may be given.

@@ -10,9 +10,10 @@ use crate::photographs::raster::{PixelWindow, load_image, load_window};
 
 /// Decodes all views, at the same time where that does not take much more memory.
 pub(crate) fn decode_all(files: &[InputFile], planned: &[PlannedView]) -> Result<Vec<View>> {
-    const MOST_PIXELS: u64 = 100_000_000;
+    // Decoded photographs take up to six bytes a pixel: so many take 600 MB.
+    const MOST_PIXELS_AT_ONCE: u64 = 100_000_000;
     let whole = |v: &PlannedView| v.size.map(u64::from).iter().product::<u64>();
-    if planned.iter().map(whole).sum::<u64>() <= MOST_PIXELS {
+    if planned.iter().map(whole).sum::<u64>() <= MOST_PIXELS_AT_ONCE {
         let views = crate::base::execution::map(planned, |_, view| decode(&files[view.file], view));
         views.into_iter().collect()
     } else {

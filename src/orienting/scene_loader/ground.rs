@@ -23,14 +23,14 @@ const PHOTOGRAPHS: usize = 4;
 
 /// Longest side at which photographs are matched to show the ground, pixels. Assumption: that is a
 /// thousand points and a height to within a pixel or two, which is enough here.
-const MATCHED_PX: u32 = 1200;
+const MATCHED_SIDE_PX: u32 = 1200;
 
 /// Photographs are reduced as long as their pixels stay finer than this on the ground, metres.
 /// Assumption: B99 has pixels of 8 cm.
-const FINEST_M: f64 = 0.05;
+const FINEST_PIXEL_M: f64 = 0.05;
 
 /// Smaller photographs are used as they are, pixels: most of a scene is then seen at once.
-const SMALL_PX: u64 = 4_000_000;
+const SMALL_PHOTOGRAPH_PX: u64 = 4_000_000;
 
 /// Plans a scene; where more views show the region of interest than are used, by the heights that
 /// some photographs show there.
@@ -96,7 +96,7 @@ fn reduction(files: &[InputFile], options: &LoadOptions) -> u32 {
 
 /// The largest whole factor that leaves pixels of this size on the ground, metres, fine enough.
 pub(crate) fn reduction_of(pixel_m: f64) -> u32 {
-    ((FINEST_M / pixel_m) as u32).max(1)
+    ((FINEST_PIXEL_M / pixel_m) as u32).max(1)
 }
 
 /// Median size of a pixel in the middle of an image on ground of this height, metres.
@@ -204,7 +204,7 @@ fn nearest(whole: &Plan, place: Option<Point2<f64>>) -> Vec<PlannedView> {
     nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     let matched = |view: &&PlannedView| {
         let mut view = PlannedView::clone(view);
-        view.reduce((view.whole.width.max(view.whole.height)).div_ceil(MATCHED_PX));
+        view.reduce((view.whole.width.max(view.whole.height)).div_ceil(MATCHED_SIDE_PX));
         view
     };
     nearest.iter().take(PHOTOGRAPHS).map(matched).collect()
@@ -223,7 +223,10 @@ fn heights_near(files: &[InputFile], whole: &Plan, place: Option<Point2<f64>>) -
 
 /// Are all photographs small enough to be used as they are?
 fn are_small(whole: &Plan) -> bool {
-    whole.views.iter().all(|view| view.pixels() < SMALL_PX)
+    whole
+        .views
+        .iter()
+        .all(|view| view.pixels() < SMALL_PHOTOGRAPH_PX)
 }
 
 #[cfg(test)]

@@ -4,8 +4,7 @@
 use nalgebra::Vector3;
 
 use super::input::LoadOptions;
-use super::names::listed;
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::orienting::known::{
     FOOTPRINT_ACCURACY_M, Known, POINT_CLOUD_ACCURACY_M, PointCloud, Register, TERRAIN_ACCURACY_M,
     Terrain, WorldSystem,
@@ -18,7 +17,7 @@ const OWN_PROPERTY: &str = "\"lowest_roof_m\"";
 
 /// Points are of use this far around the region of interest, or what the views show, metres.
 /// Assumption: roofs begin inside it and reach as far beyond.
-const AROUND_M: f64 = 30.0;
+const POINTS_MARGIN_M: f64 = 30.0;
 
 /// What each file is; what the options name as terrain or footprints is that.
 pub(super) fn kinds_of(files: &[InputFile], options: &LoadOptions) -> Vec<FileKind> {
@@ -44,48 +43,13 @@ pub(super) fn read_known(
     area: Option<[f64; 4]>,
 ) -> Result<(Known, Vec<String>)> {
     let mut warnings = Vec::new();
-    let of_kind = |kind: FileKind| {
-        let all = files.iter().zip(kinds);
-        all.filter(move |(file, k)| **k == kind && !options.unused.contains(&file.path))
-            .map(|(file, _)| file)
-    };
-    let terrains: Vec<&InputFile> = of_kind(FileKind::Terrain).collect();
-    // Of CityJSON nothing tells whether it is a result of this program.
-    let is_register = |file: &&InputFile| {
-        let text = file.text();
-        !text.contains("\"CityObjects\"") && !text.contains(OWN_PROPERTY)
-    };
-    let registers: Vec<&InputFile> = of_kind(FileKind::Footprints).filter(is_register).collect();
-    let is_cloud = |file: &&InputFile| file.bytes.starts_with(POINT_CLOUD);
-    // Beside a grid a cloud is asked for its roofs only.
-    let grids: Vec<&InputFile> = terrains.iter().copied().filter(|f| !is_cloud(f)).collect();
-    let grounds = if grids.is_empty() { &terrains } else { &grids };
-    let terrain = match options.ground_z {
-        Some(_) => None,
-        None => chosen(files, options.terrain.as_deref(), grounds, &mut warnings)?,
-    };
-    let footprints = chosen(
-        files,
-        options.footprints.as_deref(),
-        &registers,
-        &mut warnings,
-    )?;
-    let clouds: Vec<&InputFile> = match (&options.terrain, terrain) {
-        // The cloud that is named as the terrain is the one that is meant.
-        (Some(_), Some(file)) if is_cloud(&file) => vec![file],
-        _ => terrains.iter().copied().filter(is_cloud).collect(),
-    };
-    let mut said = Vec::new();
-    let cloud = chosen(files, options.point_cloud.as_deref(), &clouds, &mut said)?;
-    // The same may have been said of them as terrain.
-    said.retain(|said| !warnings.contains(said));
-    warnings.extend(said);
+    let [terrain, footprints, cloud] = meant(files, kinds, options, &mut warnings)?;
     let terrain = match terrain {
         Some(file) => {
             let accuracy_m = options.terrain_accuracy_m.unwrap_or(TERRAIN_ACCURACY_M);
             match Terrain::read(file, system, origin, accuracy_m) {
                 // Its roofs are of use without its ground.
-                Err(problem) if options.terrain.is_none() && is_cloud(&file) => {
+                Err(problem) if options.terrain.is_none() && is_cloud(file) => {
                     warnings.push(format!("as terrain it is not used: {problem}"));
                     None
                 }
@@ -99,7 +63,12 @@ pub(super) fn read_known(
             .point_cloud_accuracy_m
             .unwrap_or(POINT_CLOUD_ACCURACY_M);
         let around = |[x0, y0, x1, y1]: [f64; 4]| {
-            [x0 - AROUND_M, y0 - AROUND_M, x1 + AROUND_M, y1 + AROUND_M]
+            [
+                x0 - POINTS_MARGIN_M,
+                y0 - POINTS_MARGIN_M,
+                x1 + POINTS_MARGIN_M,
+                y1 + POINTS_MARGIN_M,
+            ]
         };
         PointCloud::read(file, system, origin, accuracy_m, area.map(around))
     });
@@ -113,6 +82,50 @@ pub(super) fn read_known(
         point_cloud: cloud.transpose()?.map(Into::into),
     };
     Ok((known, warnings))
+}
+
+fn is_cloud(file: &InputFile) -> bool {
+    file.bytes.starts_with(POINT_CLOUD)
+}
+
+/// The files of the terrain, the footprints and the point cloud.
+fn meant<'a>(
+    files: &'a [InputFile],
+    kinds: &[FileKind],
+    options: &LoadOptions,
+    warnings: &mut Vec<String>,
+) -> Result<[Option<&'a InputFile>; 3]> {
+    let of_kind = |kind: FileKind| {
+        let all = files.iter().zip(kinds);
+        all.filter(move |(file, k)| **k == kind && !options.unused.contains(&file.path))
+            .map(|(file, _)| file)
+    };
+    let terrains: Vec<&InputFile> = of_kind(FileKind::Terrain).collect();
+    // Of CityJSON nothing tells whether it is a result of this program.
+    let is_register = |file: &&InputFile| {
+        let text = file.text();
+        !text.contains("\"CityObjects\"") && !text.contains(OWN_PROPERTY)
+    };
+    let registers: Vec<&InputFile> = of_kind(FileKind::Footprints).filter(is_register).collect();
+    // Beside a grid a cloud is asked for its roofs only.
+    let grids: Vec<&InputFile> = terrains.iter().copied().filter(|f| !is_cloud(f)).collect();
+    let grounds = if grids.is_empty() { &terrains } else { &grids };
+    let terrain = match options.ground_z {
+        Some(_) => None,
+        None => chosen(files, options.terrain.as_deref(), grounds, warnings)?,
+    };
+    let footprints = chosen(files, options.footprints.as_deref(), &registers, warnings)?;
+    let clouds: Vec<&InputFile> = match (&options.terrain, terrain) {
+        // The cloud that is named as the terrain is the one that is meant.
+        (Some(_), Some(file)) if is_cloud(file) => vec![file],
+        _ => terrains.iter().copied().filter(|f| is_cloud(f)).collect(),
+    };
+    let mut said = Vec::new();
+    let cloud = chosen(files, options.point_cloud.as_deref(), &clouds, &mut said)?;
+    // The same may have been said of them as terrain.
+    said.retain(|said| !warnings.contains(said));
+    warnings.extend(said);
+    Ok([terrain, footprints, cloud])
 }
 
 /// The file that is named, else the only one of its kind.

@@ -13,7 +13,7 @@ use super::region;
 use crate::base::agreement::{AgreementReport, Finding};
 use crate::base::error::{Error, Result};
 use crate::orienting::known::{Known, WorldSystem};
-use crate::orienting::orientation::{FileSource, InputFile};
+use crate::orienting::orientation::{FileKind, FileSource, InputFile};
 use crate::orienting::orientation_check::CheckedView;
 use crate::orienting::scene::{Scene, Survey, View};
 use crate::photographs::camera::Camera;
@@ -70,17 +70,7 @@ fn load_planned(plan: Plan, files: &[InputFile], options: &LoadOptions) -> Resul
     }
     let checked = checked?;
     if let (Some(unit), Some(_), false) = (checked.reread, options.roi, plan.is_cut_later) {
-        return Err(Error::Scene {
-            problem: format!(
-                "the images show that the angles are in {}, but the region of interest was cut \
-                 before, for want of memory",
-                unit.name()
-            ),
-            advice: format!(
-                "state the unit in the list (\"# angles in {}\")",
-                unit.name()
-            ),
-        });
+        return Err(cut_before(unit.name()));
     }
     // What was said of cameras with the angles read otherwise is out of date.
     let placement_warnings = match checked.reread {
@@ -107,6 +97,30 @@ fn load_planned(plan: Plan, files: &[InputFile], options: &LoadOptions) -> Resul
             ..plan.survey
         },
     };
+    add_known(&mut scene, files, &plan.kinds, options)?;
+    if let (Some(roi), true) = (options.roi, plan.is_cut_later) {
+        region::cut_scene(&mut scene, roi, options.max_views)?;
+    }
+    Ok(scene)
+}
+
+fn cut_before(unit: &str) -> Error {
+    Error::Scene {
+        problem: format!(
+            "the images show that the angles are in {unit}, but the region of interest was cut \
+             before, for want of memory"
+        ),
+        advice: format!("state the unit in the list (\"# angles in {unit}\")"),
+    }
+}
+
+/// Adds the region of interest and what is known of it.
+fn add_known(
+    scene: &mut Scene,
+    files: &[InputFile],
+    kinds: &[FileKind],
+    options: &LoadOptions,
+) -> Result<()> {
     let system = WorldSystem {
         epsg: scene.survey.epsg,
         anchor: scene.survey.anchor,
@@ -116,14 +130,11 @@ fn load_planned(plan: Plan, files: &[InputFile], options: &LoadOptions) -> Resul
         [x0 - x, y0 - y, x1 - x, y1 - y]
     };
     scene.region = options.roi.map(local);
-    let area = scene.region.or_else(|| area_of_views(&scene));
-    let known = read_known(files, &plan.kinds, options, &system, scene.origin, area)?;
-    scene.known = known.0;
-    scene.warnings.extend(known.1);
-    if let (Some(roi), true) = (options.roi, plan.is_cut_later) {
-        region::cut_scene(&mut scene, roi, options.max_views)?;
-    }
-    Ok(scene)
+    let area = scene.region.or_else(|| area_of_views(scene));
+    let (known, warnings) = read_known(files, kinds, options, &system, scene.origin, area)?;
+    scene.known = known;
+    scene.warnings.extend(warnings);
+    Ok(())
 }
 
 /// The box of what the views show, local frame; `None` where they do not tell how high the ground

@@ -45,17 +45,6 @@ pub(crate) fn images_called(name: &str, paths: &[PathName]) -> Vec<usize> {
         .collect()
 }
 
-/// Names in a row; long lists are cut short.
-pub(crate) fn listed(names: impl Iterator<Item = impl AsRef<str>>) -> String {
-    const MOST: usize = 8;
-    let names: Vec<String> = names.map(|n| n.as_ref().to_owned()).collect();
-    let mut text = names[..names.len().min(MOST)].join(", ");
-    if names.len() > MOST {
-        text.push_str(&format!(" and {} more", names.len() - MOST));
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -76,11 +65,5 @@ mod tests {
         assert_eq!(images_called("c1/1.JPG", &paths), [1]);
         assert_eq!(images_called("2.jpg", &paths), [3]);
         assert_eq!(images_called("3.jpg", &paths), [0; 0]);
-    }
-
-    #[test]
-    fn long_lists_are_cut() {
-        assert_eq!(listed(["a", "b"].iter()), "a, b");
-        assert!(listed((0..20).map(|i| i.to_string())).ends_with("7 and 12 more"));
     }
 }

@@ -3,9 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use super::names::listed;
 use super::planned_view::{PlannedImage, PlannedView};
-use crate::base::error::Error;
+use crate::base::error::{Error, listed};
 use crate::orienting::orientation::{FileKind, InputFile, stem};
 use crate::photographs::raster::{Bands, UnreadImageFormat, unread_image_format};
 

@@ -10,6 +10,9 @@ use crate::orienting::scene::View;
 use crate::photographs::camera::{Camera, Distortion};
 use crate::photographs::raster::{ImageHeader, Turn};
 
+/// Images and parts of them keep so many pixels along a side, to be matched. Assumption.
+pub(super) const SMALLEST_SIDE_PX: u32 = 64;
+
 /// An image and the orientation found for it.
 pub(crate) struct PlannedImage {
     pub file: usize,
@@ -70,10 +73,8 @@ impl PlannedView {
     /// over are dropped; the corner of the image is that of its first pixel, so that coordinates
     /// are divided.
     pub(crate) fn reduce(&mut self, factor: u32) {
-        // An image keeps enough pixels to be matched.
-        const SMALLEST_PX: u32 = 64;
         let smallest = self.whole.width.min(self.whole.height);
-        let factor = factor.min(smallest / SMALLEST_PX).max(1);
+        let factor = factor.min(smallest / SMALLEST_SIDE_PX).max(1);
         let by = 1.0 / f64::from(factor);
         self.reduction *= factor;
         self.whole.k = Matrix3::from_diagonal(&Vector3::new(by, by, 1.0)) * self.whole.k;
@@ -129,18 +130,7 @@ pub(super) fn planned_view(
             "use the images in the size that was oriented, or scale the orientation to this one",
         ));
     }
-    let mut k = orientation.k;
-    if orientation.from_middle {
-        k[(0, 2)] += f64::from(width) / 2.0;
-        k[(1, 2)] += f64::from(height) / 2.0;
-    }
-    let mut camera = Camera {
-        k,
-        r: orientation.r,
-        center: orientation.center,
-        width,
-        height,
-    };
+    let mut camera = camera_of(orientation, width, height);
     if let Some(problem) = camera_checks::numeric_problem(&camera) {
         return Err(refuse(
             format!(
@@ -152,12 +142,7 @@ pub(super) fn planned_view(
     }
     let mut distortion = orientation.distortion;
     if let Some(lens) = &mut distortion {
-        let pinhole = match lens.is_fisheye() {
-            true => lens.rectified(&camera.k, width, height),
-            false if lens.is_plausible(&camera.k, width, height) => Ok((camera.k, *lens)),
-            false => Err("folds the image over"),
-        };
-        (camera.k, *lens) = pinhole.map_err(|problem| {
+        (camera.k, *lens) = pinhole_of(lens, &camera).map_err(|problem| {
             refuse(
                 format!("the lens distortion in {} {problem}", orientation.source),
                 "check the order and the signs of the coefficients, or undistort the images",
@@ -177,6 +162,37 @@ pub(super) fn planned_view(
         part: None,
         turn,
     })
+}
+
+fn camera_of(orientation: &Orientation, width: u32, height: u32) -> Camera {
+    let mut k = orientation.k;
+    if orientation.from_middle {
+        k[(0, 2)] += f64::from(width) / 2.0;
+        k[(1, 2)] += f64::from(height) / 2.0;
+    }
+    Camera {
+        k,
+        r: orientation.r,
+        center: orientation.center,
+        width,
+        height,
+    }
+}
+
+/// The calibration of the pinhole that a photograph is resampled to, and the lens seen from it; or
+/// what is wrong with the lens.
+fn pinhole_of(
+    lens: &Distortion,
+    camera: &Camera,
+) -> std::result::Result<(Matrix3<f64>, Distortion), &'static str> {
+    let Camera {
+        k, width, height, ..
+    } = camera;
+    match lens.is_fisheye() {
+        true => lens.rectified(k, *width, *height),
+        false if lens.is_plausible(k, *width, *height) => Ok((*k, *lens)),
+        false => Err("folds the image over"),
+    }
 }
 
 /// The quarter turn after which the image has the size that its orientation states.

@@ -7,9 +7,10 @@ use super::block::{Block, Observation, Pose};
 use super::bundle::{BundleOptions, adjust};
 use super::intrinsics::{Intrinsics, PARAMETERS};
 use super::resection::{ResectionProblem, resect};
-use super::triangulation::{LEAST_ANGLE, MOST_SIGMAS, largest_angle, triangulate};
+use super::triangulation::{LARGEST_RESIDUAL_SIGMAS, LEAST_ANGLE, largest_angle, triangulate};
 use super::two_view::{PairKind, TwoViewGeometry};
 use crate::base::execution::{map, reached};
+use crate::base::math::RAYLEIGH_MEDIAN;
 
 /// A pair whose matches agree with one geometry.
 pub(super) struct VerifiedPair {
@@ -30,7 +31,7 @@ const FEWEST_POINTS: usize = 15;
 const LEAST_SHARE: f64 = 0.25;
 
 /// Photographs tried at a time: those that see the most points.
-const TRIED: usize = 4;
+const PHOTOGRAPHS_TRIED: usize = 4;
 
 /// Growth of the block after which all of it is adjusted.
 const GROWTH: f64 = 1.2;
@@ -38,11 +39,9 @@ const GROWTH: f64 = 1.2;
 /// Rays whose median angle is larger gain nothing more, radians.
 const BEST_ANGLE: f64 = 12.0 * std::f64::consts::PI / 180.0;
 
-/// Rounds of adjusting and removing outliers at the end.
+/// Rounds of adjusting and removing outliers at the end. Assumption: what the last one removes
+/// changes nothing.
 const FINAL_ROUNDS: usize = 3;
-
-/// Median length of a residual of two normal components, in their standard deviation.
-const RAYLEIGH_MEDIAN: f64 = 1.177_41;
 
 /// What sees a block grow.
 pub(super) type OnGrowth<'a> = &'a mut dyn FnMut(&Block);
@@ -208,7 +207,7 @@ impl Growing<'_> {
             .filter(|(seen, _)| *seen >= FEWEST_POINTS)
             .collect();
         order.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
-        for tried in order.chunks(TRIED) {
+        for tried in order.chunks(PHOTOGRAPHS_TRIED) {
             let poses = map(tried, |_, &(_, photo)| self.pose(block, photo));
             let found = tried
                 .iter()
@@ -257,7 +256,8 @@ impl Growing<'_> {
             let t = &block.tracks[track];
             match t.point {
                 Some(point) => {
-                    let fits = block.residual(&t.observations[place], &point) <= MOST_SIGMAS;
+                    let fits =
+                        block.residual(&t.observations[place], &point) <= LARGEST_RESIDUAL_SIGMAS;
                     block.tracks[track].observations[place].is_used = fits;
                 }
                 None => open.push(track),
@@ -301,7 +301,7 @@ pub(super) fn remove_outliers(block: &mut Block) {
     let judged: Vec<Option<Vec<bool>>> = map(&block.tracks, |_, track| {
         let point = track.point?;
         let fits: Vec<bool> = (track.observations.iter())
-            .map(|o| block.residual(o, &point) <= MOST_SIGMAS)
+            .map(|o| block.residual(o, &point) <= LARGEST_RESIDUAL_SIGMAS)
             .collect();
         let used: Vec<Observation> = (track.observations.iter().zip(&fits))
             .filter(|(_, fits)| **fits)

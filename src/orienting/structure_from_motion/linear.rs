@@ -101,9 +101,7 @@ pub(super) fn real_roots(coefficients: &[f64]) -> Vec<f64> {
 
 /// The roots from -1 to 1.
 fn roots_within_one(coefficients: &[f64]) -> Vec<f64> {
-    const MOST: usize = 16;
     let degree = coefficients.len() - 1;
-    debug_assert!(degree < MOST);
     // Roots of the derivatives, the highest first: each list divides the range for the next.
     let mut separators: Vec<f64> = Vec::new();
     for order in (0..degree).rev() {

@@ -24,7 +24,7 @@ const SIGMAS: [f64; 3] = [0.5, 1.0, 2.0];
 const SHARE: f64 = 0.5;
 
 /// Entries of the table of scores for a squared residual of one.
-const STEPS: f64 = 16.0;
+const ENTRIES_PER_UNIT: f64 = 16.0;
 
 /// Squared residual at which the table ends: twelve standard deviations.
 const END: usize = 144;
@@ -33,8 +33,8 @@ const END: usize = 144;
 const CONFIDENCE: f64 = 0.9999;
 
 /// Expectation-maximisation steps after each new best hypothesis, and at the end.
-const LOCAL_STEPS: usize = 3;
-const FINAL_STEPS: usize = 10;
+const LOCAL_EM_STEPS: usize = 3;
+const FINAL_EM_STEPS: usize = 10;
 
 /// What is estimated, from what.
 pub(super) trait Estimator {
@@ -75,8 +75,10 @@ impl Likelihood {
             };
             SIGMAS.iter().map(of_sigma).sum::<f64>() / SIGMAS.len() as f64
         };
-        let entries = 0..=END * STEPS as usize;
-        let ratios: Vec<f64> = entries.map(|i| ratio(i as f64 / STEPS)).collect();
+        let entries = 0..=END * ENTRIES_PER_UNIT as usize;
+        let ratios: Vec<f64> = entries
+            .map(|i| ratio(i as f64 / ENTRIES_PER_UNIT))
+            .collect();
         let mixture = |q: &f64| 1.0 - SHARE + SHARE * q;
         Self {
             scores: ratios.iter().map(|q| math::ln(mixture(q))).collect(),
@@ -85,7 +87,7 @@ impl Likelihood {
     }
 
     fn of(table: &[f64], end: f64, r2: f64) -> f64 {
-        let x = r2 * STEPS;
+        let x = r2 * ENTRIES_PER_UNIT;
         if x.is_nan() || x >= (table.len() - 1) as f64 {
             return end;
         }
@@ -137,12 +139,12 @@ pub(super) fn estimate<E: Estimator>(
             let Some(score) = score_above(problem, likelihood, &model, least) else {
                 continue;
             };
-            let (model, score) = optimised(problem, likelihood, (model, score), LOCAL_STEPS);
+            let (model, score) = optimised(problem, likelihood, (model, score), LOCAL_EM_STEPS);
             needed = samples_needed(problem, likelihood, &model).clamp(1, most);
             best = Some((model, score));
         }
     }
-    let (model, score) = optimised(problem, likelihood, best?, FINAL_STEPS);
+    let (model, score) = optimised(problem, likelihood, best?, FINAL_EM_STEPS);
     let inliers = (0..n)
         .filter(|&i| likelihood.posterior(problem.residual2(&model, i)) > 0.5)
         .collect();

@@ -9,7 +9,7 @@ use crate::base::math;
 pub(super) const LEAST_ANGLE: f64 = 1.5 * std::f64::consts::PI / 180.0;
 
 /// Largest residual of a ray, standard deviations.
-pub(super) const MOST_SIGMAS: f64 = 4.0;
+pub(super) const LARGEST_RESIDUAL_SIGMAS: f64 = 4.0;
 
 /// Most pairs of rays that are tried for a point.
 const MOST_PAIRS: usize = 30;
@@ -55,14 +55,7 @@ pub(super) fn triangulate(
             let Some(point) = nearest_point(pair.map(|r| (r.pose.center, r.direction))) else {
                 continue;
             };
-            let (mut agreeing, mut sum) = (Vec::new(), 0.0);
-            for (k, ray) in rays.iter().enumerate() {
-                let residual = block.residual(ray.observation, &point);
-                if residual <= MOST_SIGMAS {
-                    agreeing.push(k);
-                    sum += residual * residual;
-                }
-            }
+            let (agreeing, sum) = agreeing(block, &rays, &point);
             let is_better = best.as_ref().is_none_or(|(_, most, least)| {
                 agreeing.len() > most.len() || (agreeing.len() == most.len() && sum < *least)
             });
@@ -75,7 +68,7 @@ pub(super) fn triangulate(
                 let indices: Vec<usize> = agreeing.iter().map(|&k| rays[k].index).collect();
                 let stays = |p: &Point3<f64>| {
                     let mut each = agreeing.iter();
-                    each.all(|&k| block.residual(rays[k].observation, p) <= MOST_SIGMAS)
+                    each.all(|&k| block.residual(rays[k].observation, p) <= LARGEST_RESIDUAL_SIGMAS)
                 };
                 let point = if stays(&mean) { mean } else { point };
                 let is_complete = agreeing.len() == rays.len();
@@ -87,6 +80,19 @@ pub(super) fn triangulate(
         }
     }
     finished(best)
+}
+
+/// The rays that agree with a point, and the sum of their squared residuals.
+fn agreeing(block: &Block, rays: &[Ray], point: &Point3<f64>) -> (Vec<usize>, f64) {
+    let (mut agreeing, mut sum) = (Vec::new(), 0.0);
+    for (k, ray) in rays.iter().enumerate() {
+        let residual = block.residual(ray.observation, point);
+        if residual <= LARGEST_RESIDUAL_SIGMAS {
+            agreeing.push(k);
+            sum += residual * residual;
+        }
+    }
+    (agreeing, sum)
 }
 
 fn finished(best: Option<(Point3<f64>, Vec<usize>, f64)>) -> Option<(Point3<f64>, Vec<usize>)> {

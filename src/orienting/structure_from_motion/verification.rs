@@ -123,17 +123,7 @@ pub(super) fn guess_focal(
 ) -> Sharded<Vec<Guess>> {
     let all_stated = !is_guessed.contains(&true);
     let tried_of: Vec<bool> = is_guessed.iter().map(|&g| g || all_stated).collect();
-    let mut judges: Vec<&MatchedPair> = (pairs.iter())
-        .filter(|p| p.photos.iter().any(|&i| tried_of[photos[i].camera]))
-        .collect();
-    judges.sort_by(|a, b| {
-        b.matches
-            .len()
-            .cmp(&a.matches.len())
-            .then(a.photos.cmp(&b.photos))
-    });
-    // The pairs with the most matches hardly differ in their place: every third says more.
-    let judges: Vec<&MatchedPair> = judges.into_iter().step_by(3).take(JUDGES).collect();
+    let judges = judges(photos, pairs, &tried_of);
     let with = |share: f64| -> Guess {
         let focal = |camera: &Intrinsics| share * f64::from(camera.size[0].max(camera.size[1]));
         let under = (cameras.iter().zip(&tried_of)).map(|(camera, &is_tried)| Intrinsics {
@@ -173,22 +163,46 @@ pub(super) fn guess_focal(
     }
     let as_stated = all_stated.then(|| under.pop()).flatten();
     under.sort_by(|a, b| b.nats.total_cmp(&a.nats));
-    let Some(as_stated) = as_stated else {
-        return Ok(under);
-    };
+    Ok(match as_stated {
+        Some(as_stated) => with_rival(as_stated, under, cameras),
+        None => under,
+    })
+}
+
+/// The pairs that judge guesses of the focal length of some cameras.
+fn judges<'a>(
+    photos: &[MatchedPhoto],
+    pairs: &'a [MatchedPair],
+    is_tried: &[bool],
+) -> Vec<&'a MatchedPair> {
+    let mut judges: Vec<&MatchedPair> = (pairs.iter())
+        .filter(|p| p.photos.iter().any(|&i| is_tried[photos[i].camera]))
+        .collect();
+    judges.sort_by(|a, b| {
+        b.matches
+            .len()
+            .cmp(&a.matches.len())
+            .then(a.photos.cmp(&b.photos))
+    });
+    // The pairs with the most matches hardly differ in their place: every third says more.
+    judges.into_iter().step_by(3).take(JUDGES).collect()
+}
+
+/// The cameras as they are stated, and the likeliest of the guesses where the pairs prefer it.
+fn with_rival(as_stated: Guess, guesses: Vec<Guess>, cameras: &[Intrinsics]) -> Vec<Guess> {
     // A guess that the header's own spread covers is none: the adjustment gets there.
     let is_rival = |guess: &Guess| {
         let focals = guess.cameras.iter().zip(cameras);
         let mut nats = focals.map(|(c, stated)| stated_focal_nats(c.focal, stated.focal, 0.0));
         nats.any(|nats| nats < 0.0)
     };
-    let Some(best) = under.into_iter().find(is_rival) else {
-        return Ok(vec![as_stated]);
+    let Some(best) = guesses.into_iter().find(is_rival) else {
+        return vec![as_stated];
     };
     // One of so many guesses: the likelihood of any is their mean, of which the best is all.
     let of_any = best.nats - math::ln(FOCAL_GUESSES.len() as f64);
-    Ok(match of_any > as_stated.nats + STATED_FOCAL_ODDS {
+    match of_any > as_stated.nats + STATED_FOCAL_ODDS {
         true => vec![as_stated, best],
         false => vec![as_stated],
-    })
+    }
 }

@@ -37,7 +37,7 @@ const HOME: Placement = Placement {
 const GROUND_Z: f64 = 1.5;
 const EAVE_Z: f64 = 6.0;
 /// Walls on a slope begin so far below the ground in the middle, metres.
-const DEEPEST: f64 = 4.0;
+const DEEPEST_WALL_M: f64 = 4.0;
 /// How far the roof projects beyond the walls, metres.
 const OVERHANG: f64 = 0.6;
 /// Tangent of the roof slope (about 37 degrees).
@@ -60,7 +60,7 @@ pub(crate) fn gable_on_slope(slope: f64) -> SyntheticBuilding {
     let mut house = gable();
     let tilted = |p: &Point3<f64>| Point3::new(p.x, p.y, p.z + slope * p.x);
     let sunk = |p: &Point3<f64>| match p.z == GROUND_Z {
-        true => Point3::new(p.x, p.y, p.z - DEEPEST),
+        true => Point3::new(p.x, p.y, p.z - DEEPEST_WALL_M),
         false => *p,
     };
     let walls = house.faces.len() - house.truth.facets.len();

@@ -117,11 +117,14 @@ impl Distortion {
     /// Does the lens keep the order of points over an image of this size? Beyond the turning point
     /// of its polynomial a distortion folds the image over, which no lens does.
     pub fn is_plausible(&self, k: &Matrix3<f64>, width: u32, height: u32) -> bool {
-        const STEPS: u32 = 16;
-        (0..=STEPS * STEPS).all(|i| {
+        // Places a side where the order is looked at. Assumption: a polynomial that folds anywhere
+        // folds a corner.
+        const GRID_POINTS: u32 = 16;
+        (0..=GRID_POINTS * GRID_POINTS).all(|i| {
             let p = Point2::new(
-                f64::from(width) * f64::from(i % STEPS) / f64::from(STEPS - 1),
-                f64::from(height) * f64::from((i / STEPS).min(STEPS - 1)) / f64::from(STEPS - 1),
+                f64::from(width) * f64::from(i % GRID_POINTS) / f64::from(GRID_POINTS - 1),
+                f64::from(height) * f64::from((i / GRID_POINTS).min(GRID_POINTS - 1))
+                    / f64::from(GRID_POINTS - 1),
             );
             self.keeps_order(&normalised(k, &p))
         })

@@ -31,8 +31,8 @@ impl Projection {
             _ => math::hypot(ideal.x, ideal.y),
         };
         // Nearer to the axis the tangent and its angle are one number.
-        const NEAR: f64 = 1e-9;
-        ideal * (self.radius(r.max(NEAR)) / r.max(NEAR))
+        const LEAST_RADIUS: f64 = 1e-9;
+        ideal * (self.radius(r.max(LEAST_RADIUS)) / r.max(LEAST_RADIUS))
     }
 
     /// The radius of a direction by its tangent.

@@ -12,7 +12,7 @@ use crate::photographs::raster::{Gray, Photograph};
 
 /// Largest angle from the axis of a fisheye that is used, degrees. Out there the pinhole draws a
 /// pixel of an equidistant photograph out to four (1 / cos^2), and further out ever faster.
-const WIDEST_DEG: f64 = 60.0;
+const WIDEST_ANGLE_DEG: f64 = 60.0;
 
 impl Distortion {
     /// The pinhole of the photograph's size that takes in the widest field of a fisheye with
@@ -24,12 +24,14 @@ impl Distortion {
         width: u32,
         height: u32,
     ) -> Result<(Matrix3<f64>, Self), &'static str> {
+        // Pinholes that are tried. Assumption: a tenth of a degree at its border is no loss.
         const STEPS_PER_DEGREE: u32 = 10;
-        const BORDER: u32 = 64;
+        // Places along each side of the image. Assumption: its border is smooth.
+        const BORDER_STEPS: u32 = 64;
         let (w, h) = (f64::from(width), f64::from(height));
-        let border: Vec<Point2<f64>> = (0..=BORDER)
+        let border: Vec<Point2<f64>> = (0..=BORDER_STEPS)
             .flat_map(|i| {
-                let t = f64::from(i) / f64::from(BORDER);
+                let t = f64::from(i) / f64::from(BORDER_STEPS);
                 [[t * w, 0.0], [t * w, h], [0.0, t * h], [w, t * h]].map(Point2::from)
             })
             .map(|pixel| normalised(k, &pixel))
@@ -40,7 +42,7 @@ impl Distortion {
             (-slack..=w + slack).contains(&p.x) && (-slack..=h + slack).contains(&p.y)
         };
         let mut found = None;
-        for step in 1..=WIDEST_DEG as u32 * STEPS_PER_DEGREE {
+        for step in 1..=WIDEST_ANGLE_DEG as u32 * STEPS_PER_DEGREE {
             let angle_deg = f64::from(step) / f64::from(STEPS_PER_DEGREE);
             let (s, c) = math::sin_cos(angle_deg.to_radians());
             // Border points of this pinhole lie at `wider` times the directions of `k`.

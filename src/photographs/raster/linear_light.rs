@@ -38,9 +38,9 @@ fn linear_light(value: f64) -> f64 {
 /// Derivative of [`linear_light`].
 fn slope(value: f64) -> f64 {
     /// Bound for black profiles, whose noise would be amplified without limit.
-    const LEAST: f64 = 0.05;
+    const LEAST_SLOPE: f64 = 0.05;
     let [a, b, c] = CUBIC;
-    (a + value * (2.0 * b + value * 3.0 * c)).max(LEAST)
+    (a + value * (2.0 * b + value * 3.0 * c)).max(LEAST_SLOPE)
 }
 
 #[cfg(test)]

@@ -34,8 +34,9 @@ pub struct RedBlueDifference {
 impl RedBlueDifference {
     /// That of a photograph; `None` for one without colour, whose bands differ by rounding alone.
     pub fn of(rgb: &RgbImage) -> Option<Self> {
-        const ROUNDING: u8 = 2;
-        (rgb.pixels().any(|p| p[0].abs_diff(p[2]) > ROUNDING)).then_some(())?;
+        // Grey levels: JPEG's conversion from luminance and colour rounds each band by itself.
+        const ROUNDING_LEVELS: u8 = 2;
+        (rgb.pixels().any(|p| p[0].abs_diff(p[2]) > ROUNDING_LEVELS)).then_some(())?;
         let (width, height) = rgb.dimensions();
         let mut image = Gray::new(width as usize, height as usize);
         for (value, pixel) in image.data.iter_mut().zip(rgb.pixels()) {
@@ -71,11 +72,13 @@ impl RedBlueDifference {
 /// 510, the sum of the third differences is a small share of the sum of the steps. Measured: 0.14
 /// to 0.19 where one colour was kept for four pixels, 0.30 to 0.42 where each pixel has its own.
 fn is_interpolated(image: &Gray) -> bool {
-    const STEP: f32 = 24.0 / 510.0;
-    const BENDS: f32 = 0.25;
+    // Both measured, as said above: the share lies halfway between what keeps one colour for four
+    // pixels and what has its own in each.
+    const LEAST_STEP: f32 = 24.0 / 510.0;
+    const LARGEST_BEND_SHARE: f32 = 0.25;
     let (mut bends, mut steps) = (0.0, 0.0);
     let mut add = |a: f32, b: f32, c: f32, d: f32| {
-        if (d - a).abs() > STEP {
+        if (d - a).abs() > LEAST_STEP {
             steps += (d - a).abs();
             bends += (d - 3.0 * c + 3.0 * b - a).abs();
         }
@@ -87,7 +90,7 @@ fn is_interpolated(image: &Gray) -> bool {
         let at = |x: usize, up: usize| image.data[(y - up) * image.width + x];
         (0..image.width).for_each(|x| add(at(x, 3), at(x, 2), at(x, 1), at(x, 0)));
     }
-    bends < BENDS * steps
+    bends < LARGEST_BEND_SHARE * steps
 }
 
 #[cfg(test)]

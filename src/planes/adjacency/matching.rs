@@ -22,7 +22,7 @@ use super::graph::{ImageCorner, ImageGraph};
 use super::sectors::sector_color;
 use super::space_corner::{Sighting, SpaceCorner, edges, log_normal_2, place};
 use crate::base::ids::ViewId;
-use crate::base::math::{exp, ln, median};
+use crate::base::math::{SIGMA_OVER_MEDIAN, exp, ln, median};
 use crate::base::plan_index::PlanIndex;
 use crate::orienting::scene::Scene;
 use crate::planes::coplanar::log_normal;
@@ -306,8 +306,6 @@ impl<'a> GraphSpace<'a> {
     /// Variances of the difference of colours of one region in two views, from corners that place
     /// and edges speak for; robust, for some regions are hidden in one of the views.
     fn measured_differences(&self, corners: &[SpaceCorner]) -> Option<Vector3<f64>> {
-        /// Of normally distributed differences.
-        const SIGMA_OVER_MEDIAN: f64 = 1.4826;
         let mut off: [Vec<f64>; 3] = Default::default();
         for corner in corners.iter().filter(|c| c.nats() > 0.0) {
             for colors in self.region_colors(corner) {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::line_sides::{CLEAR_NATS, places_beside};
 use crate::base::geometry::{Plane, Segment3};
-use crate::base::math::median;
+use crate::base::math::{SIGMA_OVER_MEDIAN, median};
 use crate::lines::lines3d::Side;
 use crate::orienting::scene::{Scene, View};
 use crate::photographs::raster::Channel;
@@ -250,8 +250,6 @@ impl SurfaceAppearance {
 
     /// By median and median absolute deviation: up to half of the samples may be outliers.
     fn robust(appearances: &[Vector2<f64>]) -> Option<Self> {
-        /// Standard deviation of a normal distribution, in medians of the absolute deviation.
-        const OF_MEDIAN: f64 = 1.4826;
         let middle =
             |values: &mut dyn Iterator<Item = f64>| median(&mut values.collect::<Vec<_>>());
         let mut mean = Vector2::zeros();
@@ -263,7 +261,7 @@ impl SurfaceAppearance {
                     .iter()
                     .map(|appearance| (appearance[i] - mean[i]).abs()),
             )?;
-            let deviation = OF_MEDIAN * off;
+            let deviation = SIGMA_OVER_MEDIAN * off;
             information[(i, i)] = 1.0 / (deviation * deviation + LEAST_DEVIATION * LEAST_DEVIATION);
         }
         Some(Self {

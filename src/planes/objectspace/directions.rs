@@ -56,6 +56,7 @@ pub struct DirectionTrace {
     pub found: Vec<MainDirections>,
 }
 
+/// Bins of half a degree: half of what an average line is accurate to.
 const BINS: usize = 360;
 /// Contrasts above this add no more weight: a white line on a road is no better edge than an eave.
 const FULL_CONTRAST: f64 = 0.1;
@@ -171,8 +172,10 @@ pub(super) fn directions_by_length(
         for start in lines {
             let mut directions = best.0.clone();
             directions.push(*start);
-            const ROUNDS: usize = 3;
-            for _ in 0..ROUNDS {
+            // Lines are divided among the directions and these averaged. Assumption: three times
+            // settle it.
+            const REASSIGNMENT_ROUNDS: usize = 3;
+            for _ in 0..REASSIGNMENT_ROUNDS {
                 let along = described(&directions, lines).1;
                 for (k, direction) in directions.iter_mut().enumerate() {
                     let own = lines.iter().zip(&along).filter(|(_, d)| **d == Some(k));
@@ -260,16 +263,18 @@ fn difference(a: f64, b: f64) -> f64 {
 
 /// The mean of the azimuths around a peak, far ones weighted down.
 fn refined(start: f64, cuts: &[[f64; 2]]) -> f64 {
-    const SCALE: f64 = 0.01;
-    const WIDEST: f64 = 0.05;
-    const ROUNDS: usize = 8;
+    // Radians. Assumption: half of an average line's degree, where weights begin to fall, and three
+    // degrees, beyond which lines run along something else.
+    const WEIGHT_SCALE_RADIANS: f64 = 0.01;
+    const WINDOW_RADIANS: f64 = 0.05;
+    const REWEIGHTING_ROUNDS: usize = 8;
     let mut azimuth = start;
-    for _ in 0..ROUNDS {
+    for _ in 0..REWEIGHTING_ROUNDS {
         let (mut sum, mut weights) = (0.0, 0.0);
         for [a, weight] in cuts {
             let d = difference(*a, azimuth);
-            if d.abs() < WIDEST {
-                let w = weight * Loss::Cauchy(SCALE).weight(d * d);
+            if d.abs() < WINDOW_RADIANS {
+                let w = weight * Loss::Cauchy(WEIGHT_SCALE_RADIANS).weight(d * d);
                 sum += w * d;
                 weights += w;
             }

@@ -82,7 +82,7 @@ pub struct WindowTrace {
 /// outline of a garage.
 const LEAST_LINES_M: f64 = 6.0;
 /// Lines within this angle, radians, may be of one building. Assumption: the error of a short one.
-const NEARLY_PARALLEL: f64 = 0.05;
+const PARALLEL_ANGLE: f64 = 0.05;
 
 /// Windows at the given places (x0, y0, x1, y1, local frame), or around the buildings that the
 /// lines show.
@@ -265,7 +265,7 @@ fn linked(lines: &[TileLine], link_m: f64) -> Vec<usize> {
     for i in 0..lines.len() {
         for j in i + 1..lines.len() {
             let [a, b] = [&lines[i], &lines[j]];
-            if apart(a.azimuth.radians, b.azimuth.radians) < NEARLY_PARALLEL
+            if apart(a.azimuth.radians, b.azimuth.radians) < PARALLEL_ANGLE
                 && between(&a.segment, &b.segment) < link_m
             {
                 let (a, b) = (root(&mut parent, i), root(&mut parent, j));

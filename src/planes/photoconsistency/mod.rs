@@ -32,6 +32,7 @@ mod windows;
 pub(crate) use box_sum::{BoxSum, HALF_WINDOW, RowSum, WINDOW, WINDOW_CELLS};
 pub(crate) use consistency_map::{ConsistencyMap, MAX_VIEWS};
 pub(crate) use line_side_strip::{LineSideStrip, StripPatch};
+pub(crate) use pairwise_correlation::LEAST_VARIANCE;
 pub(crate) use plan_grid::{CELL_SAMPLES, PlanGrid, orthophoto};
 pub(crate) use plane_consistency::{
     LEAST_SLOPE, consistency_map, consistency_map_behind, consistency_map_of_surface,

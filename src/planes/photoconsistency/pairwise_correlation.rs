@@ -58,7 +58,7 @@ pub(super) fn correlate_views(
 }
 
 /// Least variance that is not the rounding of a constant.
-pub(super) const LEAST_VARIANCE: f32 = 1e-7;
+pub(crate) const LEAST_VARIANCE: f32 = 1e-7;
 /// Samples of a window.
 const WINDOW_SAMPLES: f32 = WINDOW_CELLS * SAMPLES as f32;
 /// Samples of a cell.

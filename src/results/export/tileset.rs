@@ -26,7 +26,7 @@ pub const TILESET_FILE: &str = "tileset.json";
 
 /// Half the step of the differences that make the map linear, metres: curvature cancels, and
 /// rounding (1e-9 m of 6.4e6 m) stays far below a millimetre.
-const STEP_M: f64 = 50.0;
+const HALF_STEP_M: f64 = 50.0;
 
 /// Half a side of the box around nothing, metres.
 const LEAST_HALF_M: f64 = 0.5;
@@ -207,11 +207,11 @@ fn written(scene: &Scene, root: Node) -> Vec<u8> {
 fn placement(scene: &Scene, middle: &Point3<f64>) -> Option<Matrix4<f64>> {
     let on_earth = |p: Point3<f64>| scene.survey.geocentric(&(p + scene.origin));
     let column = |axis: Vector3<f64>| {
-        let ends = [STEP_M, -STEP_M].map(|step| on_earth(middle + axis * step));
+        let ends = [HALF_STEP_M, -HALF_STEP_M].map(|step| on_earth(middle + axis * step));
         let [Some(a), Some(b)] = ends else {
             return None;
         };
-        Some((a - b) / (2.0 * STEP_M))
+        Some((a - b) / (2.0 * HALF_STEP_M))
     };
     let axes = Matrix3::from_columns(&[
         column(Vector3::x())?,

@@ -8,7 +8,7 @@ use crate::roofs::model::{BuildingWalls, Solid, SolidFace, Surface, Wall};
 
 /// A wall of a solid is one of those that were placed if its corners are this near to its line,
 /// metres.
-const NEAR_M: f64 = 0.02;
+const CORNER_TOLERANCE_M: f64 = 0.02;
 
 /// The geometry of a solid with walls, with the index in the file of each of its corners.
 pub(super) fn walled_solid(walls: &BuildingWalls, solid: &Solid, corners: &[usize]) -> Value {
@@ -71,6 +71,8 @@ fn stands_in(wall: &Wall, corners: &[&Point3<f64>]) -> bool {
     corners.iter().all(|p| {
         let offset = p.xy() - start;
         let (s, depth) = (along.dot(&offset), along.perp(&offset));
-        (depth - wall.depth_m).abs() < NEAR_M && s > -NEAR_M && s < side.norm() + NEAR_M
+        (depth - wall.depth_m).abs() < CORNER_TOLERANCE_M
+            && s > -CORNER_TOLERANCE_M
+            && s < side.norm() + CORNER_TOLERANCE_M
     })
 }

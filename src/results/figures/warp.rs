@@ -14,7 +14,7 @@ use crate::photographs::camera::{Camera, Homography, homography_of_plane};
 use crate::planes::half_planes::{PointsOfInterest, similarity_curve};
 
 /// Rows shown on the other side of the line, pixels: to see where the line is.
-const BEYOND_PX: f64 = 4.0;
+const ROWS_BEYOND_PX: f64 = 4.0;
 
 /// All views warped into the reference view.
 #[derive(Clone, Debug, Serialize)]
@@ -77,7 +77,7 @@ pub fn warped_views(
         reference,
         similarity: curve.similarity.first().copied().unwrap_or(0.0),
         points: curve.points.iter().map(|p| picture.place_of(p)).collect(),
-        line_row: BEYOND_PX,
+        line_row: ROWS_BEYOND_PX,
         columns: picture.columns,
         rows: picture.rows,
         views: Vec::new(),
@@ -127,8 +127,8 @@ impl WarpRaster {
             -normal
         };
         let along = image.direction();
-        let start = image.p0 - across * BEYOND_PX;
-        let depth_px = params.depth_px.min(params.depth_m / pixel_m) + BEYOND_PX;
+        let start = image.p0 - across * ROWS_BEYOND_PX;
+        let depth_px = params.depth_px.min(params.depth_m / pixel_m) + ROWS_BEYOND_PX;
         Some(Self {
             image_from_picture: Matrix3::new(
                 along.x, across.x, start.x, along.y, across.y, start.y, 0.0, 0.0, 1.0,

@@ -18,27 +18,25 @@ use nalgebra::{Point3, Vector2};
 use crate::base::geometry::Segment3;
 use crate::base::ids::FacetId;
 use crate::roofs::model::Facet;
+use crate::roofs::solids::WRITTEN_STEP_M;
 
 /// An edge is level up to this sine of its angle to the contour lines: 10 degrees. Assumption: the
 /// least angle of a hip to them is some 30.
-const LEVEL_SINE: f64 = 0.1736;
+const CONTOUR_SINE: f64 = 0.1736;
 
 /// Rises below this are none, metres per metre: 1 degree.
-const FLAT: f64 = 0.0175;
+const FLAT_SLOPE: f64 = 0.0175;
 
 /// Facets whose heights differ by less meet, metres. Assumption: less than the covering and its
 /// battens is no step.
-const STEP_M: f64 = 0.1;
+const STEP_HEIGHT_M: f64 = 0.1;
 
 /// Pieces of an edge turn by less than this sine (1 degree).
-pub(super) const STRAIGHT_SINE: f64 = 0.0175;
+pub(super) const TURN_SINE: f64 = 0.0175;
 
 /// Shorter pieces between longer ones have no direction of their own, metres: what is left where
 /// outlines were welded.
-const SHORT_M: f64 = 0.01;
-
-/// Step of the plan positions that are compared, metres: that in which they are written.
-const KEY_M: f64 = 1e-4;
+const SHORT_PIECE_M: f64 = 0.01;
 
 /// What an edge of a roof is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -111,7 +109,7 @@ impl RoofEdge {
 
 /// A position in plan that can be compared.
 pub(super) fn key(p: &Point3<f64>) -> [i64; 2] {
-    [p.x, p.y].map(|c| (c / KEY_M).round() as i64)
+    [p.x, p.y].map(|c| (c / WRITTEN_STEP_M).round() as i64)
 }
 
 /// A piece of a ring between two of its corners: kind, facet beyond, ends.
@@ -133,7 +131,9 @@ pub fn roof_edges(facets: &[(FacetId, &Facet)]) -> Vec<RoofEdge> {
                 let twin = left_of.get(&(key(&b), key(&a))).filter(|twin| twin.0 != i);
                 let beyond = twin.map(|&(j, z_b, z_a)| (j, z_a - a.z, z_b - b.z));
                 let (kind, other) = match beyond {
-                    Some((j, at_a, at_b)) if at_a.abs() < STEP_M && at_b.abs() < STEP_M => {
+                    Some((j, at_a, at_b))
+                        if at_a.abs() < STEP_HEIGHT_M && at_b.abs() < STEP_HEIGHT_M =>
+                    {
                         // The first of both facets has it.
                         if j < i {
                             return None;
@@ -170,10 +170,10 @@ fn sides(ring: &[Point3<f64>]) -> impl Iterator<Item = [Point3<f64>; 2]> {
 fn join_pieces(pieces: &[Option<Piece>]) -> Vec<Piece> {
     let goes_on = |run: &Piece, next: &Piece| {
         let (d, e) = (run.2.direction(), next.2.direction());
-        let is_straight = d.dot(&e) > 0.0 && d.cross(&e).norm() < STRAIGHT_SINE;
+        let is_straight = d.dot(&e) > 0.0 && d.cross(&e).norm() < TURN_SINE;
         let is_same = (run.0, run.1) == (next.0, next.1) && is_straight;
-        let is_rest = run.1.is_none() && next.1.is_none() && next.2.length() < SHORT_M;
-        is_same || (is_rest && run.2.length() >= SHORT_M)
+        let is_rest = run.1.is_none() && next.1.is_none() && next.2.length() < SHORT_PIECE_M;
+        is_same || (is_rest && run.2.length() >= SHORT_PIECE_M)
     };
     let starts_new = |i: usize| {
         let before = &pieces[(i + pieces.len() - 1) % pieces.len()];
@@ -221,11 +221,11 @@ fn common_kind(facet: &Facet, other: &Facet, a: &Point3<f64>, b: &Point3<f64>) -
     };
     let is_level = is_level(&along, &steeper);
     let bend = rise_own + rise_beyond;
-    if is_level && rise_own < -FLAT && rise_beyond < -FLAT {
+    if is_level && rise_own < -FLAT_SLOPE && rise_beyond < -FLAT_SLOPE {
         RoofEdgeKind::Ridge
-    } else if is_level && rise_own > FLAT && rise_beyond > FLAT {
+    } else if is_level && rise_own > FLAT_SLOPE && rise_beyond > FLAT_SLOPE {
         RoofEdgeKind::Valley
-    } else if is_level || bend.abs() < FLAT {
+    } else if is_level || bend.abs() < FLAT_SLOPE {
         RoofEdgeKind::Transition
     } else if bend < 0.0 {
         RoofEdgeKind::Hip
@@ -240,7 +240,7 @@ fn end_kind(facet: &Facet, a: &Point3<f64>, b: &Point3<f64>) -> RoofEdgeKind {
     let own = gradient(facet);
     if !is_level(&along, &own) {
         RoofEdgeKind::Rake
-    } else if own.norm() < FLAT || own.dot(&out) < 0.0 {
+    } else if own.norm() < FLAT_SLOPE || own.dot(&out) < 0.0 {
         RoofEdgeKind::Eave
     } else {
         RoofEdgeKind::TopEdge
@@ -249,5 +249,5 @@ fn end_kind(facet: &Facet, a: &Point3<f64>, b: &Point3<f64>) -> RoofEdgeKind {
 
 fn is_level(along: &Vector2<f64>, gradient: &Vector2<f64>) -> bool {
     let slope = gradient.norm();
-    slope < FLAT || along.dot(gradient).abs() < LEVEL_SINE * slope
+    slope < FLAT_SLOPE || along.dot(gradient).abs() < CONTOUR_SINE * slope
 }

@@ -29,7 +29,7 @@ use crate::base::ids::{BuildingId, FacetId};
 use crate::roofs::model::{Building, Facet, RoofModel};
 
 /// Slopes below this have no direction, degrees: that of a roof which drains is more.
-const LEVEL_DEG: f64 = 1.0;
+const LEVEL_SLOPE_DEG: f64 = 1.0;
 
 /// A length for each kind of edge, in the order of [`RoofEdgeKind::ALL`], metres; `None` where
 /// there is no such edge.
@@ -119,7 +119,7 @@ fn building_report(model: &RoofModel, id: BuildingId, building: &Building) -> Bu
                     value: slope_deg,
                     sigma: facet.uncertainty.as_ref().map(|u| u.slope_deg),
                 },
-                azimuth_deg: (slope_deg >= LEVEL_DEG).then(|| azimuth(&shape, i)),
+                azimuth_deg: (slope_deg >= LEVEL_SLOPE_DEG).then(|| azimuth(&shape, i)),
                 lowest_m,
                 highest_m,
                 lengths: lengths(&shape, &own),

@@ -36,7 +36,7 @@ const NO_EFFECT: f64 = 1e-9;
 /// Sine of the angle between an edge and a side below which the side does not end it (15 degrees).
 const ENDING_SINE: f64 = 0.2588;
 /// No angle between an edge and what ends it has a smaller sine (3 degrees).
-const LEAST_SINE: f64 = 0.05;
+const LEAST_ANGLE_SINE: f64 = 0.05;
 
 /// A building whose sides and planes can be moved.
 pub(super) struct Shape<'a> {
@@ -254,6 +254,7 @@ impl<'a> Shape<'a> {
         };
         // Both sides still meet there: s_e = (a n_o s_o + b along) . n_e.
         let aside = x[own.0] * own.2;
-        (x[ending.0] - aside * ending.2) / larger(ending.1.abs(), LEAST_SINE).copysign(ending.1)
+        (x[ending.0] - aside * ending.2)
+            / larger(ending.1.abs(), LEAST_ANGLE_SINE).copysign(ending.1)
     }
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Point2, Point3, Vector2};
 
-use super::edges::{STRAIGHT_SINE, key};
+use super::edges::{TURN_SINE, key};
 use crate::roofs::model::Facet;
 
 /// Corners in plan, each once.
@@ -115,7 +115,7 @@ impl StraightSides {
                 let along = direction([from, to]);
                 for &next in &beside[&to] {
                     let on = direction([to, next]);
-                    let is_straight = along.dot(&on) > 0.0 && along.perp(&on).abs() < STRAIGHT_SINE;
+                    let is_straight = along.dot(&on) > 0.0 && along.perp(&on).abs() < TURN_SINE;
                     if is_straight && !sides.of_piece.contains_key(&sorted([to, next])) {
                         sides.of_piece.insert(sorted([to, next]), side);
                         ahead.push([to, next]);

@@ -15,22 +15,24 @@ pub(super) struct Packing {
 }
 
 /// Sides of the atlas are multiples of this: the blocks of a JPEG with halved colour resolution.
-const STEP: usize = 16;
+const JPEG_BLOCK_PX: usize = 16;
 
 /// Packs patches of these sizes into the smallest atlas that is about square and no larger than
 /// `limit` on either side; `None` when they do not fit.
 pub(super) fn pack(sizes: &[(usize, usize)], limit: usize) -> Option<Packing> {
-    let limit = limit / STEP * STEP;
+    let limit = limit / JPEG_BLOCK_PX * JPEG_BLOCK_PX;
     // In f64: the product may exceed 32 bits.
     let area: f64 = sizes.iter().map(|&(w, h)| w as f64 * h as f64).sum();
     let widest = sizes.iter().map(|s| s.0).max().unwrap_or(1);
-    let mut width = (area.sqrt() as usize).max(widest).next_multiple_of(STEP);
+    let mut width = (area.sqrt() as usize)
+        .max(widest)
+        .next_multiple_of(JPEG_BLOCK_PX);
     while width <= limit {
         let packing = shelves(sizes, width);
-        if packing.height <= width.max(limit.min(2 * STEP)) {
+        if packing.height <= width.max(limit.min(2 * JPEG_BLOCK_PX)) {
             return Some(packing);
         }
-        width += STEP.max(width / 64 / STEP * STEP);
+        width += JPEG_BLOCK_PX.max(width / 64 / JPEG_BLOCK_PX * JPEG_BLOCK_PX);
     }
     let widest_possible = shelves(sizes, limit);
     (widest <= limit && widest_possible.height <= limit).then_some(widest_possible)
@@ -53,7 +55,7 @@ fn shelves(sizes: &[(usize, usize)], width: usize) -> Packing {
     }
     Packing {
         width,
-        height: bottom.max(1).next_multiple_of(STEP),
+        height: bottom.max(1).next_multiple_of(JPEG_BLOCK_PX),
         places,
     }
 }

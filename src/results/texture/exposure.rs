@@ -16,7 +16,7 @@ use crate::orienting::scene::Scene;
 /// percent.
 const SAMPLES: f64 = 100.0;
 /// Grey value from which on a texel is taken as saturated.
-const SATURATED: f32 = 250.0;
+const SATURATED_GREY: f32 = 250.0;
 /// Fewest texels that two views must both show.
 const LEAST_COMMON: usize = 10;
 /// Fewest faces by which two views are compared. Assumption: half of them may look different from
@@ -80,7 +80,7 @@ fn log_ratios(seen: &[(ViewId, Colours)]) -> Vec<([usize; 2], [f64; 3])> {
 fn log_ratio(a: &Colours, b: &Colours) -> Option<[f64; 3]> {
     let both = a.iter().zip(b).filter_map(|(x, y)| Some([(*x)?, (*y)?]));
     let (mut sums, mut count) = ([[0.0f64; 2]; 3], 0usize);
-    for colours in both.filter(|colours| colours.iter().flatten().all(|c| *c < SATURATED)) {
+    for colours in both.filter(|colours| colours.iter().flatten().all(|c| *c < SATURATED_GREY)) {
         for (c, sum) in sums.iter_mut().enumerate() {
             (0..2).for_each(|of| sum[of] += f64::from(colours[of][c]));
         }

@@ -48,11 +48,8 @@ pub fn texture_ground(
     let patch = TexturePatch::new(&plane, texel_m);
 
     let (_, mut faces) = faces_of(model);
-    let images_of = |faces: &[FacePlane]| -> Vec<FaceImages> {
-        let views = scene.views.iter();
-        views.map(|v| FaceImages::new(faces, &v.camera)).collect()
-    };
-    let exposures = exposures(scene, &faces, &images_of(&faces), params.overhang_m);
+    let images = FaceImages::of_views(scene, &faces);
+    let exposures = exposures(scene, &faces, &images, params.overhang_m);
     faces.push(plane);
     let ground = faces.len() - 1;
     let mut painted = paint(
@@ -60,7 +57,7 @@ pub fn texture_ground(
         &faces,
         ground,
         &patch,
-        &images_of(&faces),
+        &FaceImages::of_views(scene, &faces),
         &exposures,
         params.overhang_m,
     );

@@ -104,11 +104,7 @@ pub fn texture_model(
     params: &TextureParams,
 ) -> (TexturedModel, TextureTrace) {
     let (keys, faces) = faces_of(model);
-    let face_images: Vec<FaceImages> = scene
-        .views
-        .iter()
-        .map(|v| FaceImages::new(&faces, &v.camera))
-        .collect();
+    let face_images = FaceImages::of_views(scene, &faces);
     let texels = crate::base::execution::map_part(&faces, 0.0..0.2, |i, face| {
         texel_m(scene, i, face, &face_images, params)
     });

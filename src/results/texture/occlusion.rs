@@ -9,6 +9,7 @@ use nalgebra::{Point2, Point3};
 
 use super::patch::{FacePlane, TexturePatch};
 use crate::base::geometry::clip;
+use crate::orienting::scene::Scene;
 use crate::photographs::camera::Camera;
 use crate::photographs::raster::mark_inside;
 
@@ -25,6 +26,12 @@ pub(super) struct FaceImages {
 }
 
 impl FaceImages {
+    /// Those of all views.
+    pub(super) fn of_views(scene: &Scene, faces: &[FacePlane]) -> Vec<Self> {
+        let views = scene.views.iter();
+        views.map(|v| Self::new(faces, &v.camera)).collect()
+    }
+
     /// The images of all faces that look towards the camera.
     pub(super) fn new(faces: &[FacePlane], camera: &Camera) -> Self {
         let face_image = |face: &FacePlane| {

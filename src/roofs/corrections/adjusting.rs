@@ -13,15 +13,15 @@ use crate::roofs::buildings::{Statement, adjust_to_statements};
 use crate::roofs::model::Facet;
 
 /// Standard deviation of slopes and directions that are stated, metres over a few metres.
-const EXACT_M: f64 = 2e-3;
+const STATED_SIGMA_M: f64 = 2e-3;
 /// Steepest slope that can be stated, degrees.
-const STEEPEST_DEG: f64 = 80.0;
+const STEEPEST_SLOPE_DEG: f64 = 80.0;
 /// Corners and edges are moved no further, metres.
-const FURTHEST_M: f64 = 50.0;
+const LONGEST_MOVE_M: f64 = 50.0;
 /// Facets that fall within this angle of opposite directions are symmetric about a ridge, degrees.
 const OPPOSITE_DEG: f64 = 30.0;
 /// Slopes below this have no direction, metres of height per metre.
-const LEVEL: f64 = 1e-3;
+const LEVEL_SLOPE: f64 = 1e-3;
 
 /// A statement that has been adjusted to, by the places where its corners are since.
 #[derive(Clone, Debug)]
@@ -42,6 +42,16 @@ impl Held {
 struct About {
     house: usize,
     statements: Vec<(Statement, f64)>,
+}
+
+impl About {
+    /// All are known to the same standard deviation, metres.
+    fn new(of: At, statements: impl IntoIterator<Item = Statement>, sigma_m: f64) -> Self {
+        Self {
+            house: of.house,
+            statements: statements.into_iter().map(|s| (s, sigma_m)).collect(),
+        }
+    }
 }
 
 /// Adjusts a building to what a correction states of it.
@@ -100,84 +110,89 @@ fn statements(
     correction: &Correction,
     facet: &dyn Fn(&FacetPlace) -> Result<At, NotApplied>,
 ) -> Result<About, NotApplied> {
-    let about = |of: At, statements: Vec<Statement>, sigma_m: f64| About {
-        house: of.house,
-        statements: statements.into_iter().map(|s| (s, sigma_m)).collect(),
+    let gradient = |of: At, is: Vector2<f64>| {
+        let face = of.facet;
+        About::new(of, [Statement::Gradient { face, is }], STATED_SIGMA_M)
     };
     match correction {
         Correction::MoveCorner { from, to, sigma_m } => {
             let (Corner { of, corner }, sigma_m) = (draft.corner(from)?, plausible(*sigma_m)?);
             near(from, to)?;
-            let here = Statement::corner(of.facet, corner, to).to_vec();
-            Ok(about(of, here, sigma_m))
+            let here = Statement::corner(of.facet, corner, to);
+            Ok(About::new(of, here, sigma_m))
         }
-        Correction::MoveEdge { from, to, sigma_m } => {
-            let (sides, sigma_m) = (draft.edge(from)?, plausible(*sigma_m)?);
-            near(&from[0], &to[0])?;
-            near(&from[1], &to[1])?;
-            let line = not_vertical(to)?;
-            let on = |c: &Corner| Statement::OnLine {
-                face: c.of.facet,
-                corner: c.corner,
-                line,
-            };
-            let mut all: Vec<Corner> = sides.iter().flatten().copied().collect();
-            all.sort_by_key(|c| (c.of, c.corner));
-            all.dedup();
-            let of = all[0].of;
-            Ok(about(of, all.iter().map(on).collect(), sigma_m))
-        }
-        Correction::SetParallel { edge, to } => {
-            let sides = draft.edge(edge)?;
-            let [p, q] = draft.edge(to)?[0].map(|c| draft.position(c));
-            let direction = not_vertical(&[p, q])?.direction();
-            let along = |[a, b]: &[Corner; 2]| Statement::Along {
-                face: a.of.facet,
-                corners: [a.corner, b.corner],
-                direction,
-            };
-            Ok(about(
-                sides[0][0].of,
-                sides.iter().map(along).collect(),
-                EXACT_M,
-            ))
-        }
-        Correction::SetLevel { facet: place } => {
-            let of = facet(place)?;
-            let is = Vector2::zeros();
-            let face = of.facet;
-            Ok(about(of, vec![Statement::Gradient { face, is }], EXACT_M))
-        }
+        Correction::MoveEdge { from, to, sigma_m } => moved_edge(draft, from, to, *sigma_m),
+        Correction::SetParallel { edge, to } => parallel_edges(draft, edge, to),
+        Correction::SetLevel { facet: place } => Ok(gradient(facet(place)?, Vector2::zeros())),
         Correction::SetSlope {
             facet: place,
             slope_deg,
         } => {
-            if !(0.0..STEEPEST_DEG).contains(slope_deg) {
+            if !(0.0..STEEPEST_SLOPE_DEG).contains(slope_deg) {
                 return Err(NotApplied::Implausible);
             }
             let of = facet(place)?;
             let (sin, cos) = math::sin_cos(slope_deg.to_radians());
-            let direction = rise(draft, of).try_normalize(LEVEL);
+            let direction = rise(draft, of).try_normalize(LEVEL_SLOPE);
             let is = direction.ok_or(NotApplied::OtherSlope)? * (sin / cos);
-            let face = of.facet;
-            Ok(about(of, vec![Statement::Gradient { face, is }], EXACT_M))
+            Ok(gradient(of, is))
         }
-        Correction::SetSymmetric { facets: [a, b] } => {
-            let (a, b) = (facet(a)?, facet(b)?);
-            if a.house != b.house || a == b {
-                return Err(NotApplied::NotNeighbours);
-            }
-            let faces = [a.facet, b.facet];
-            let (f, g) = (rise(draft, a), rise(draft, b));
-            let apart = math::atan2(f.perp(&-g).abs(), f.dot(&-g)).to_degrees();
-            let statement = match apart <= OPPOSITE_DEG {
-                true => Statement::Opposite { faces },
-                false => Statement::EquallySteep { faces },
-            };
-            Ok(about(a, vec![statement], EXACT_M))
-        }
+        Correction::SetSymmetric { facets: [a, b] } => symmetric(draft, facet(a)?, facet(b)?),
         _ => Err(NotApplied::NotAdjusted),
     }
+}
+
+fn moved_edge(
+    draft: &Draft,
+    from: &[Point3<f64>; 2],
+    to: &[Point3<f64>; 2],
+    sigma_m: f64,
+) -> Result<About, NotApplied> {
+    let (sides, sigma_m) = (draft.edge(from)?, plausible(sigma_m)?);
+    near(&from[0], &to[0])?;
+    near(&from[1], &to[1])?;
+    let line = not_vertical(to)?;
+    let on = |c: &Corner| Statement::OnLine {
+        face: c.of.facet,
+        corner: c.corner,
+        line,
+    };
+    let mut all: Vec<Corner> = sides.iter().flatten().copied().collect();
+    all.sort_by_key(|c| (c.of, c.corner));
+    all.dedup();
+    Ok(About::new(all[0].of, all.iter().map(on), sigma_m))
+}
+
+fn parallel_edges(
+    draft: &Draft,
+    edge: &[Point3<f64>; 2],
+    to: &[Point3<f64>; 2],
+) -> Result<About, NotApplied> {
+    let sides = draft.edge(edge)?;
+    let [p, q] = draft.edge(to)?[0].map(|c| draft.position(c));
+    let direction = not_vertical(&[p, q])?.direction();
+    let along = |[a, b]: &[Corner; 2]| Statement::Along {
+        face: a.of.facet,
+        corners: [a.corner, b.corner],
+        direction,
+    };
+    let of = sides[0][0].of;
+    Ok(About::new(of, sides.iter().map(along), STATED_SIGMA_M))
+}
+
+/// Two facets are equally steep, and where they nearly fall apart from each other they do so.
+fn symmetric(draft: &Draft, a: At, b: At) -> Result<About, NotApplied> {
+    if a.house != b.house || a == b {
+        return Err(NotApplied::NotNeighbours);
+    }
+    let faces = [a.facet, b.facet];
+    let (f, g) = (rise(draft, a), rise(draft, b));
+    let apart = math::atan2(f.perp(&-g).abs(), f.dot(&-g)).to_degrees();
+    let statement = match apart <= OPPOSITE_DEG {
+        true => Statement::Opposite { faces },
+        false => Statement::EquallySteep { faces },
+    };
+    Ok(About::new(a, [statement], STATED_SIGMA_M))
 }
 
 /// Rise of a facet, metres of height per metre of plan.
@@ -194,7 +209,7 @@ fn plausible(sigma_m: f64) -> Result<f64, NotApplied> {
 }
 
 fn near(from: &Point3<f64>, to: &Point3<f64>) -> Result<(), NotApplied> {
-    let is_near = (to - from).norm() <= FURTHEST_M;
+    let is_near = (to - from).norm() <= LONGEST_MOVE_M;
     is_near.then_some(()).ok_or(NotApplied::Implausible)
 }
 

@@ -5,15 +5,15 @@ use nalgebra::{Point2, Point3, Vector2};
 use super::draft::{At, Draft, DraftFacet};
 use super::outcome::NotApplied;
 use super::place::corners;
-use super::plan::{BESIDE_M, LEAST_M, Region};
-use super::shape::{LEAST_AREA_M2, OFF_M, turned, without};
+use super::plan::{Region, SHORTEST_EDGE_M, SIDE_OFFSET_M};
+use super::shape::{LEAST_AREA_M2, OFF_PLANE_M, turned, without};
 use super::slope::{Beside, Slope};
 use crate::base::geometry::{Plane, Segment3};
 use crate::lines::lines3d::{Line3d, Side};
 use crate::roofs::model::{Facet, SideSupport, SideUncertainty};
 
 /// Planes and places farther apart than this many standard deviations are two.
-const DIFFERENT_SIGMAS: f64 = 3.0;
+const DIFFERENCE_SIGMAS: f64 = 3.0;
 
 /// A stretch of a line in plan across a facet, from side to side.
 struct Chord {
@@ -73,38 +73,22 @@ fn halves(
     let (whole, line) = (draft.get(at), beside.line);
     let own = &whole.facet.plane;
     let [from, to] = stretch.map(|t| at_corner(&in_plan(&line.segment, t), &whole.facet, line));
-    let along = (to - from).try_normalize(LEAST_M)?;
-    let aside = Vector2::new(-along.y, along.x) * BESIDE_M;
-    let middle = from + (to - from) * 0.5;
-    let region = Region::of(&whole.facet);
-    let left = region
-        .left_of(&middle, &along)
-        .connected_at(&(middle + aside));
-    let right = region.without(&left).connected_at(&(middle - aside));
-    // Beyond its ends the edge divides nothing: what lies there belongs to the half beside it.
-    let left = region.without(&right);
-    let regions = [&left, &right];
-    if regions.iter().any(|half| half.area() < LEAST_AREA_M2) {
-        return None;
-    }
+    let along = (to - from).try_normalize(SHORTEST_EDGE_M)?;
+    let regions = regions_beside(&whole.facet, &(from + (to - from) * 0.5), &along)?;
     let on_line = [from, to].map(|p| Point3::new(p.x, p.y, height_above(&line.segment, &p)));
-    let reach_m = DIFFERENT_SIGMAS * line.sigma_m.max(OFF_M);
+    let reach_m = DIFFERENCE_SIGMAS * line.sigma_m.max(OFF_PLANE_M);
     let is_off = on_line
         .iter()
         .any(|e| (own.z_at(e.x, e.y) - e.z).abs() > reach_m);
+    let lifted = is_off.then(|| Segment3::new(on_line[0], on_line[1]));
     let turned_to = [Side::Left, Side::Right].map(|side| {
-        let parts = whole.over(regions[side as usize]);
-        let area = |part: &&DraftFacet| part.facet.plan_area();
-        let half = &parts
-            .iter()
-            .max_by(|a, b| area(a).total_cmp(&area(b)))?
-            .facet;
-        let otherwise = match is_off {
-            true => turned(half, &Segment3::new(on_line[0], on_line[1])),
-            false => *own,
-        };
-        let slope = beside.slope(side, half, otherwise);
-        is_other(&slope, half, own, line).then_some(slope.plane)
+        other_plane(
+            &whole.over(&regions[side as usize]),
+            side,
+            own,
+            beside,
+            &lifted,
+        )
     });
     // What no other photograph shows lies on the facet, and bounds what does not: one half.
     let turning = turned_to.iter().flatten().count();
@@ -119,7 +103,7 @@ fn halves(
     let edge = Segment3::new(ends[0], ends[1]);
     let mut facets = without(&draft.houses[at.house].facets, &[at.facet]);
     for side in [0, 1] {
-        for mut part in whole.over(regions[side]) {
+        for mut part in whole.over(&regions[side]) {
             let plane = turned_to[side].map(|plane| through(&edge, &plane));
             if let Some(plane) = plane {
                 part = part.on(plane);
@@ -138,13 +122,53 @@ fn halves(
     Some((facets, ends))
 }
 
+/// What of a facet lies to the left and to the right of an edge; `None` where that is nothing.
+fn regions_beside(
+    facet: &Facet,
+    middle: &Point2<f64>,
+    along: &Vector2<f64>,
+) -> Option<[Region; 2]> {
+    let aside = Vector2::new(-along.y, along.x) * SIDE_OFFSET_M;
+    let region = Region::of(facet);
+    let left = region
+        .left_of(middle, along)
+        .connected_at(&(middle + aside));
+    let right = region.without(&left).connected_at(&(middle - aside));
+    // Beyond its ends the edge divides nothing: what lies there belongs to the half beside it.
+    let regions = [region.without(&right), right];
+    let is_too_small = |half: &Region| half.area() < LEAST_AREA_M2;
+    (!regions.iter().any(is_too_small)).then_some(regions)
+}
+
+/// The plane of a half whose largest part falls otherwise than the facet does; `lifted` is its edge
+/// where that lies off the facet.
+fn other_plane(
+    parts: &[DraftFacet],
+    side: Side,
+    own: &Plane,
+    beside: &Beside,
+    lifted: &Option<Segment3>,
+) -> Option<Plane> {
+    let area = |part: &&DraftFacet| part.facet.plan_area();
+    let half = &parts
+        .iter()
+        .max_by(|a, b| area(a).total_cmp(&area(b)))?
+        .facet;
+    let otherwise = match lifted {
+        Some(edge) => turned(half, edge),
+        None => *own,
+    };
+    let slope = beside.slope(side, half, otherwise);
+    is_other(&slope, half, own, beside.line).then_some(slope.plane)
+}
+
 /// Is a plane beside a line, at the corners of a facet, another one than that of the facet?
 fn is_other(slope: &Slope, facet: &Facet, own: &Plane, line: &Line3d) -> bool {
     facet.outer.iter().any(|p| {
         let rise = slope.plane.z_at(p.x, p.y) - own.z_at(p.x, p.y);
         let turn_m = slope.sigma_theta * line.segment.line_distance(p);
         let sigma_m = (turn_m * turn_m + line.sigma_m * line.sigma_m).sqrt();
-        rise.abs() > DIFFERENT_SIGMAS * sigma_m
+        rise.abs() > DIFFERENCE_SIGMAS * sigma_m
     })
 }
 
@@ -197,7 +221,7 @@ fn height_above(line: &Segment3, p: &Point2<f64>) -> f64 {
 fn at_corner(p: &Point2<f64>, facet: &Facet, line: &Line3d) -> Point2<f64> {
     let near = corners(facet)
         .map(|q| ((q.xy() - p).norm(), q.xy()))
-        .filter(|(apart, _)| *apart <= DIFFERENT_SIGMAS * line.sigma_m);
+        .filter(|(apart, _)| *apart <= DIFFERENCE_SIGMAS * line.sigma_m);
     let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
     nearest.map_or(*p, |(_, corner)| corner)
 }

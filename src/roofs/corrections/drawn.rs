@@ -14,7 +14,7 @@ use crate::orienting::scene::Scene;
 use crate::photographs::camera::Camera;
 
 /// Ends nearer to each other than so many standard deviations of the hand have no direction.
-const APART_SIGMAS: f64 = 4.0;
+const LENGTH_SIGMAS: f64 = 4.0;
 /// No hand is more accurate, px.
 const LEAST_SIGMA_PX: f64 = 0.01;
 
@@ -45,7 +45,7 @@ impl Sought {
         let view = ViewId::from_index(named.ok_or(NotApplied::NoPhotograph)?);
         let camera = scene.camera(view);
         let is_inside = pixels.iter().all(|x| camera.contains(x, 0.0));
-        let least = (params.matching.min_edgels as f64).max(APART_SIGMAS * sigma_px);
+        let least = (params.matching.min_edgels as f64).max(LENGTH_SIGMAS * sigma_px);
         if !is_inside || segment.length() < least {
             return Err(NotApplied::NotInPhotograph);
         }

@@ -12,9 +12,9 @@ use crate::roofs::model::{Facet, inside};
 const SLIVER_M2: f64 = 0.02;
 
 /// A place this far beside a line is on that side of it, metres: less than the width of any facet.
-pub(super) const BESIDE_M: f64 = 0.01;
+pub(super) const SIDE_OFFSET_M: f64 = 0.01;
 /// An edge is longer, metres.
-pub(super) const LEAST_M: f64 = 0.1;
+pub(super) const SHORTEST_EDGE_M: f64 = 0.1;
 
 /// Rings in plan, filled by the even-odd rule.
 #[derive(Clone, Debug, Default)]

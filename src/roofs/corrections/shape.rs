@@ -16,11 +16,11 @@ use crate::roofs::model::{Facet, is_simple};
 pub(super) const LEAST_AREA_M2: f64 = 0.25;
 /// A drawn corner this near to one of the model is that one, metres. Assumption: a hand does not
 /// distinguish them in a photograph.
-const SNAP_M: f64 = 0.3;
+const SNAP_DISTANCE_M: f64 = 0.3;
 /// A line this far off a facet is off it, metres.
-pub(super) const OFF_M: f64 = 0.02;
+pub(super) const OFF_PLANE_M: f64 = 0.02;
 /// What is drawn lies no further from the origin of the scene, metres.
-const FAR_M: f64 = 1e5;
+const FARTHEST_COORDINATE_M: f64 = 1e5;
 /// Height of a building where nothing is known of the ground, metres. Assumption: a storey.
 const STOREY_M: f64 = 3.0;
 /// Weight of a corner that the model has, among those of a drawn facet.
@@ -53,7 +53,7 @@ pub(super) fn set_ground(
     height: f64,
 ) -> Result<(), NotApplied> {
     let house = draft.house(place)?;
-    if height.abs() > FAR_M {
+    if height.abs() > FARTHEST_COORDINATE_M {
         return Err(NotApplied::Implausible);
     }
     let mut changed = draft.clone();
@@ -76,7 +76,7 @@ pub(super) fn set_eave(
     let facets = &draft.houses[house].facets;
     let all = facets.iter().flat_map(|f| corners(&f.facet));
     let rise = height - all.fold(f64::INFINITY, |low, p| low.min(p.z));
-    let is_plausible = rise.abs() < FAR_M;
+    let is_plausible = rise.abs() < FARTHEST_COORDINATE_M;
     if !is_plausible {
         return Err(NotApplied::Implausible);
     }
@@ -120,7 +120,7 @@ pub(super) fn split(
     let own: Vec<Point3<f64>> = corners(&whole.facet).copied().collect();
     let [p, q] = along.map(|p| snapped(&p, own.iter()).unwrap_or(p));
     let direction = q.xy() - p.xy();
-    if !(direction.norm() > SNAP_M && direction.norm() < FAR_M) {
+    if !(direction.norm() > SNAP_DISTANCE_M && direction.norm() < FARTHEST_COORDINATE_M) {
         return Err(NotApplied::NotDivided);
     }
     let region = Region::of(&whole.facet);
@@ -131,7 +131,7 @@ pub(super) fn split(
     let plane = &whole.facet.plane;
     let is_off = [p, q]
         .iter()
-        .any(|e| (plane.z_at(e.x, e.y) - e.z).abs() > OFF_M);
+        .any(|e| (plane.z_at(e.x, e.y) - e.z).abs() > OFF_PLANE_M);
     let mut facets = without(&draft.houses[at.house].facets, &[at.facet]);
     for half in &halves {
         for mut part in whole.over(half) {
@@ -150,7 +150,7 @@ pub(super) fn add_facet(
     outline: &[Point3<f64>],
     ground_z: Option<f64>,
 ) -> Result<(), NotApplied> {
-    let is_near = |p: &Point3<f64>| p.coords.iter().all(|c| c.abs() < FAR_M);
+    let is_near = |p: &Point3<f64>| p.coords.iter().all(|c| c.abs() < FARTHEST_COORDINATE_M);
     if outline.len() < 3 || outline.len() > 1000 || !outline.iter().all(is_near) {
         return Err(NotApplied::Implausible);
     }
@@ -257,7 +257,7 @@ fn new_facet(plane: Plane) -> DraftFacet {
 fn snapped<'a>(p: &Point3<f64>, all: impl Iterator<Item = &'a Point3<f64>>) -> Option<Point3<f64>> {
     let near = all
         .map(|q| ((q - p).norm(), q))
-        .filter(|(d, _)| *d <= SNAP_M);
+        .filter(|(d, _)| *d <= SNAP_DISTANCE_M);
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, q)| *q)
 }
 

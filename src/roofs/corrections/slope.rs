@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector2};
 
-use super::plan::{BESIDE_M, LEAST_M};
+use super::plan::{SHORTEST_EDGE_M, SIDE_OFFSET_M};
 use crate::base::geometry::{Plane, Segment3, mean_point};
 use crate::base::params::{Params, SweepParams};
 use crate::lines::linematch::shown_along;
@@ -25,17 +25,16 @@ use crate::lines::lines3d::{Line3d, Side, ThetaFrame};
 use crate::orienting::scene::Scene;
 use crate::planes::half_planes::Posterior;
 use crate::planes::photoconsistency::{PlanGrid, consistency_map};
+use crate::roofs::facets::FINEST_CELL_M;
 use crate::roofs::model::{Facet, inside};
 
-/// Finest cell of the windows, metres: as where planes compete.
-const FINEST_CELL_M: f64 = 0.12;
 /// Most cells of the windows; of a larger half they are coarser.
 const MOST_CELLS: f64 = 5000.0;
 /// Samples of theta in the first step of the sweep: at a decimetre a pixel a side 5 m from the edge
 /// moves by about one between two of them.
 const SAMPLES_IN_STEP: usize = 10;
 /// Windows are compared at every so many of them, then at each beside the likeliest.
-const EVERY: usize = 5;
+const COARSE_STRIDE: usize = 5;
 /// Likelier than not.
 const LEAST_PROBABILITY: f64 = 0.5;
 
@@ -73,10 +72,10 @@ impl Beside<'_> {
         planes.push(*otherwise);
         let sides = self.of_sides(half, &planes);
         let windows = Windows::new(self.scene, half)?;
-        let coarse = (0..thetas.len()).step_by(EVERY);
+        let coarse = (0..thetas.len()).step_by(COARSE_STRIDE);
         let mut of_windows = windows.of_planes(&planes, coarse.chain([thetas.len()]));
         let best = likeliest(&evidence(&sides, &of_windows));
-        let near = best.saturating_sub(EVERY)..(best + EVERY).min(thetas.len());
+        let near = best.saturating_sub(COARSE_STRIDE)..(best + COARSE_STRIDE).min(thetas.len());
         of_windows.extend(windows.of_planes(&planes, near));
         let evidence = evidence(&sides, &of_windows);
         let best = likeliest(&evidence);
@@ -128,13 +127,14 @@ impl Beside<'_> {
     fn sides_of(&self, half: &Facet) -> Vec<[Point3<f64>; 2]> {
         let line = &self.line.segment;
         let along = (line.p1.xy() - line.p0.xy()).normalize();
-        let is_on_line = |p: &Point3<f64>| along.perp(&(p.xy() - line.p0.xy())).abs() < LEAST_M;
+        let is_on_line =
+            |p: &Point3<f64>| along.perp(&(p.xy() - line.p0.xy())).abs() < SHORTEST_EDGE_M;
         let pixel_m = self.scene.median_ground_pixel(&line.at(0.5));
         let least_m = self.params.matching.min_edgels as f64 * pixel_m.unwrap_or(0.0);
         let rings = std::iter::once(&half.outer).chain(&half.holes);
         let sides = rings.flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
         sides
-            .filter(|(p, q)| (*q - *p).xy().norm() >= least_m.max(LEAST_M))
+            .filter(|(p, q)| (*q - *p).xy().norm() >= least_m.max(SHORTEST_EDGE_M))
             .filter(|(p, q)| !(is_on_line(p) && is_on_line(q)))
             .filter(|(p, q)| bounds_half(half, p, q))
             .map(|(p, q)| [*p, *q])
@@ -145,7 +145,7 @@ impl Beside<'_> {
 /// Does a half lie to the left of a side, and not to the right? On both sides of a slit it does.
 fn bounds_half(half: &Facet, p: &Point3<f64>, q: &Point3<f64>) -> bool {
     let along = (q - p).xy().normalize();
-    let aside = Vector2::new(-along.y, along.x) * BESIDE_M;
+    let aside = Vector2::new(-along.y, along.x) * SIDE_OFFSET_M;
     let middle = p.xy() + (q - p).xy() * 0.5;
     let covers = |at| inside(&half.outer, &at) && !half.holes.iter().any(|h| inside(h, &at));
     covers(middle + aside) && !covers(middle - aside)

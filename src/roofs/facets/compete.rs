@@ -152,13 +152,14 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[PlanRegion]) -> Optio
     let [min, max] = bounds(regions.iter().flat_map(PlanRegion::bounds));
     let size = max - min;
     // Coarser cells for a very large window: at most 9 million.
-    let step = step.max(FINEST_CELL).max((size.x * size.y / 9e6).sqrt());
+    let step = step.max(FINEST_CELL_M).max((size.x * size.y / 9e6).sqrt());
     (size.x > 0.0 && size.y > 0.0 && step.is_finite()).then(|| PlanGrid::covering(min, max, step))
 }
 
 /// Similarity of the views on the ground. Its height is only known to a few decimetres: at every
 /// position the views may agree at the height that it has there or a step beside it.
 fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Sharded<Option<ConsistencyMap>> {
+    // Metres: the few decimetres.
     const STEP: f64 = 0.3;
     let plane = ground.plane();
     let maps = sharded_map("planes", &[-STEP, 0.0, STEP], 0.1..0.2, |_, step| {
@@ -169,10 +170,11 @@ fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Sharded<Option
 
 /// Finest cell, metres. Assumption: samples 6 cm apart are what a roof's border lines can be told
 /// apart by; sharper images are reduced.
-const FINEST_CELL: f64 = 0.12;
+pub(crate) const FINEST_CELL_M: f64 = 0.12;
 
 /// The borders and a frame around the window, so that every cell that matters is closed.
 fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
+    // Metres. Assumption: no cell beside the window matters farther out.
     const MARGIN: f64 = 25.0;
     let (x0, y0) = (grid.origin.x - MARGIN, grid.origin.y - MARGIN);
     let x1 = grid.origin.x + grid.width as f64 * grid.step + MARGIN;

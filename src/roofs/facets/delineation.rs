@@ -36,7 +36,7 @@ pub(super) struct Delineation {
 }
 
 /// Bends smaller than this are smoothed away, metres: about the width of an edge in the images.
-const STRAIGHT: f64 = 0.12;
+const SMALLEST_BEND_M: f64 = 0.12;
 
 /// The outlines of all facets of a labelling.
 pub(super) fn delineate(
@@ -75,7 +75,7 @@ pub(super) fn delineate(
 /// Vertices that were moved onto each other become one; rings lose what collapses with them.
 fn join_coinciding(vertices: &[Point2<f64>], outlines: &mut Vec<Outline>) {
     /// Nearer than the arrangement tells crossings apart, metres.
-    const SAME: f64 = 0.05;
+    const SAME_VERTEX_M: f64 = 0.05;
     let mut used: Vec<usize> = outlines
         .iter()
         .flat_map(|o| o.outer.iter().chain(o.holes.iter().flatten()))
@@ -89,7 +89,7 @@ fn join_coinciding(vertices: &[Point2<f64>], outlines: &mut Vec<Outline>) {
         let same = kept
             .iter()
             .copied()
-            .find(|&k| (vertices[k] - vertices[v]).norm() < SAME);
+            .find(|&k| (vertices[k] - vertices[v]).norm() < SAME_VERTEX_M);
         if same.is_none() {
             kept.push(v);
         }
@@ -335,7 +335,7 @@ fn mark_bends(chain: &[usize], vertices: &[Point2<f64>], keep: &mut [bool]) {
         .map(|i| (i, distance(chain[i])))
         .max_by(|x, y| x.1.total_cmp(&y.1).then(y.0.cmp(&x.0)))
         .expect("at least one vertex in between");
-    if far > STRAIGHT {
+    if far > SMALLEST_BEND_M {
         mark_bends(&chain[..=split], vertices, keep);
         mark_bends(&chain[split..], vertices, keep);
     }
@@ -375,16 +375,16 @@ fn move_to_intersections(
 /// none.
 fn least_squares_step(normal: &Matrix2<f64>, right: &Vector2<f64>) -> Option<Vector2<f64>> {
     /// Square of the least difference in slope: 5 %.
-    const LEAST: f64 = 0.05 * 0.05;
+    const LEAST_SLOPE_SQUARED: f64 = 0.05 * 0.05;
     let half = 0.5 * normal.trace();
     let apart = Vector2::new(0.5 * (normal.m11 - normal.m22), normal.m12).norm();
     let [low, high] = [half - apart, half + apart];
-    if low > LEAST {
+    if low > LEAST_SLOPE_SQUARED {
         return Some(normal.try_inverse()? * right);
     }
     // What is left without the weaker axis is a multiple of the projection onto the stronger one.
     let onto_stronger = (normal - Matrix2::identity() * low) / (high - low);
-    (high > LEAST).then(|| onto_stronger * right / high)
+    (high > LEAST_SLOPE_SQUARED).then(|| onto_stronger * right / high)
 }
 
 /// The plan position nearest to `p` at which the planes that meet near it have one height.

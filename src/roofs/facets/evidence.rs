@@ -213,6 +213,7 @@ fn sum_over_cells(
     let samples = window.of_samples();
     let (dc, dr) = samples.offset_in(grid);
     let area = grid.step * grid.step;
+    // A cell whose sum is not there yet.
     const NO_PLACE: u32 = u32::MAX;
     // By cell the place of its sum.
     let mut place_of = vec![NO_PLACE; cells];

@@ -15,8 +15,8 @@ pub(super) fn without_islands(
     min_area_m2: f64,
 ) -> Vec<u32> {
     // Islands that touch each other are joined one at a time; a few rounds settle all.
-    const ROUNDS: usize = 4;
-    for _ in 0..ROUNDS {
+    const JOINING_ROUNDS: usize = 4;
+    for _ in 0..JOINING_ROUNDS {
         let islands = Islands::new(arrangement, &labels);
         let mut changed = false;
         let small = islands

@@ -39,6 +39,7 @@ mod register;
 mod verification;
 
 pub use borders::{Border, BorderKind};
+pub(crate) use compete::FINEST_CELL_M;
 pub use compete::{GroupingTrace, competing_planes};
 pub use competing_planes::CompetingPlanes;
 pub use input::{FacetInput, PlacedCloud};

@@ -147,7 +147,7 @@ impl CloudEvidence {
         }
         let e = self.cloud.params.in_error;
         // Beyond that both ratios are at their bounds.
-        let ratio = exp(nats.clamp(-MOST_NATS, MOST_NATS));
+        let ratio = exp(nats.clamp(-LARGEST_ODDS_NATS, LARGEST_ODDS_NATS));
         let older = e * larger(ratio, 1.0);
         let ratio = ((1.0 - e) * ratio + older) / (1.0 - e + older);
         EvidenceTerm {
@@ -163,7 +163,8 @@ impl CloudEvidence {
     }
 }
 
-const MOST_NATS: f64 = 100.0;
+/// Odds beyond are certainty, and their exponential stays finite.
+const LARGEST_ODDS_NATS: f64 = 100.0;
 
 impl OfPlane<'_> {
     /// What it says at a position of the plan, nats for each square metre; 0 where it has no point.

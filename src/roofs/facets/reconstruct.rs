@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::competing_planes::CompetingPlanes;
-use super::delineation::{Outline, delineate};
+use super::delineation::{Delineation, Outline, delineate};
 use super::islands::without_islands;
 use super::register::{RegisterEvidence, RegisterTrace};
 use super::verification::{
-    FacetRejection, KnownEvidence, Measured, RejectedFacet, tail_on_ground, verify,
+    FacetRejection, KnownEvidence, Measured, RejectedFacet, VerifiedFacet, tail_on_ground, verify,
 };
 use crate::base::evidence::JudgedFacet;
 use crate::base::execution::reached;
@@ -82,7 +82,13 @@ fn reconstruct_facets(
         register: None,
         cloud: competing.cloud.as_ref(),
     };
-    let mut verified = solve(labelling_with(None), competing, ground, &known, params);
+    let verifier = Verifier {
+        competing,
+        ground,
+        known: &known,
+        params,
+    };
+    let mut verified = verifier.solve(labelling_with(None));
     let register = scene.known.footprints.as_ref().map(|register| {
         let CompetingPlanes {
             evidence,
@@ -99,7 +105,11 @@ fn reconstruct_facets(
                 ..known
             };
             let labelling = labelling_with(Some(&register));
-            verified = solve(labelling, competing, ground, &known, params);
+            let verifier = Verifier {
+                known: &known,
+                ..verifier
+            };
+            verified = verifier.solve(labelling);
         }
         register.findings(&verified.facets, evidence.ground(), &arrangement.areas)
     });
@@ -118,120 +128,199 @@ struct Verified {
     rejected: Vec<RejectedFacet>,
 }
 
-/// Labels, delineates and verifies until no facet is rejected.
-fn solve(
-    mut labelling: Labelling,
-    competing: &CompetingPlanes,
-    ground: &Ground,
-    known: &KnownEvidence,
-    params: &RoofParams,
-) -> Verified {
-    const ROUNDS: usize = 4;
-    let (mut rejected, mut improbable) = (Vec::new(), Vec::new());
-    // By plane and cells.
-    let mut measured: BTreeMap<(u32, Vec<usize>), Measured> = BTreeMap::new();
-    for round in 1..=ROUNDS {
-        labelling.minimise();
-        let labels = labelling.labels();
-        let labels = without_islands(&competing.arrangement, labels, params.min_area_m2);
-        let delineation = delineate(&competing.arrangement, &labels, &competing.planes);
-        labelling.relabel(labels);
-        let (mut facets, mut accepted) = (Vec::new(), Vec::new());
-        let mut stands = vec![false; delineation.outlines.len()];
-        let mut excluded: Vec<(u32, Vec<usize>)> = Vec::new();
-        // On the ground no other plane may take their place: they stay in the labelling.
-        let mut on_ground = Vec::new();
-        let found: Vec<Facet> = (delineation.outlines.iter())
-            .map(|outline| competing.facet(outline, &delineation))
+/// What has been weighed in all rounds so far.
+#[derive(Default)]
+struct Weighed {
+    /// By plane and cells.
+    measured: BTreeMap<(u32, Vec<usize>), Measured>,
+    rejected: Vec<RejectedFacet>,
+    improbable: Vec<JudgedFacet>,
+}
+
+/// What became of the outlines of one delineation.
+#[derive(Default)]
+struct Round {
+    facets: Vec<Facet>,
+    accepted: Vec<JudgedFacet>,
+    /// By outline.
+    stands: Vec<bool>,
+    /// Planes and the cells that they lose.
+    excluded: Vec<(u32, Vec<usize>)>,
+    /// On the ground no other plane may take their place: they stay in the labelling.
+    on_ground: Vec<RejectedFacet>,
+}
+
+impl Round {
+    fn reject(
+        &mut self,
+        outline: &Outline,
+        facet: Facet,
+        reason: FacetRejection,
+        rejected: &mut Vec<RejectedFacet>,
+    ) {
+        let near_ground = matches!(reason, FacetRejection::NearGround { .. });
+        let rejection = RejectedFacet {
+            group: outline.plane,
+            outline: facet.outer,
+            reason,
+        };
+        if near_ground {
+            self.on_ground.push(rejection);
+        } else {
+            rejected.push(rejection);
+            self.excluded.push((outline.plane, outline.cells.clone()));
+        }
+    }
+}
+
+/// What facets are verified with.
+#[derive(Clone, Copy)]
+struct Verifier<'a> {
+    competing: &'a CompetingPlanes,
+    ground: &'a Ground,
+    known: &'a KnownEvidence<'a>,
+    params: &'a RoofParams,
+}
+
+impl Verifier<'_> {
+    /// Labels, delineates and verifies until no facet is rejected.
+    fn solve(&self, mut labelling: Labelling) -> Verified {
+        // Where a facet is rejected its cells are labelled anew. Assumption: what is rejected in
+        // the fourth round leaves a gap.
+        const REJECTION_ROUNDS: usize = 4;
+        let arrangement = &self.competing.arrangement;
+        let mut weighed = Weighed::default();
+        for round in 1..=REJECTION_ROUNDS {
+            labelling.minimise();
+            let labels = labelling.labels();
+            let labels = without_islands(arrangement, labels, self.params.min_area_m2);
+            let delineation = delineate(arrangement, &labels, &self.competing.planes);
+            labelling.relabel(labels);
+            let is_last = round == REJECTION_ROUNDS;
+            let found = self.weigh(&delineation, &mut weighed, is_last);
+            if found.excluded.is_empty() || is_last {
+                return self.simplified(delineation, found, weighed);
+            }
+            for (plane, cells) in found.excluded {
+                labelling.exclude(plane, &cells);
+            }
+        }
+        unreachable!("the last round returns")
+    }
+
+    /// Verifies the facets of a delineation. Those that reach the ground lose what lies on it,
+    /// where another round follows.
+    fn weigh(&self, delineation: &Delineation, weighed: &mut Weighed, is_last: bool) -> Round {
+        let competing = self.competing;
+        let outlines = &delineation.outlines;
+        let found: Vec<Facet> = (outlines.iter())
+            .map(|outline| competing.facet(outline, delineation))
             .collect();
         let occluders = Occluders::new(&found);
-        let results = crate::base::execution::map(&delineation.outlines, |i, outline| {
-            let before = measured.get(&(outline.plane, outline.cells.clone()));
+        let results = crate::base::execution::map(outlines, |i, outline| {
+            let before = weighed
+                .measured
+                .get(&(outline.plane, outline.cells.clone()));
             let facet = (&found[i], outline);
-            verify(competing, facet, &occluders, ground, known, before, params)
+            let (ground, known) = (self.ground, self.known);
+            verify(
+                competing,
+                facet,
+                &occluders,
+                ground,
+                known,
+                before,
+                self.params,
+            )
         });
-        for (i, ((outline, facet), result)) in
-            (delineation.outlines.iter().zip(found).zip(results)).enumerate()
+        let mut round = Round {
+            stands: vec![false; outlines.len()],
+            ..Round::default()
+        };
+        for (i, ((outline, facet), result)) in (outlines.iter().zip(found).zip(results)).enumerate()
         {
             let reason = match result {
                 Ok(verified) => {
-                    let windows = verified.windows().clone();
-                    let evidence = verified.evidence;
+                    let judged = self.judged(&facet, &verified);
                     let key = (outline.plane, outline.cells.clone());
-                    measured.insert(key, verified.measured);
-                    let probability = evidence.probability();
-                    let judged = JudgedFacet {
-                        outline: facet.outer.clone(),
-                        holes: facet.holes.clone(),
-                        plane: facet.plane,
-                        accepted: evidence.accepts(params.least_nats),
-                        evidence: evidence.clone(),
-                        windows,
-                    };
+                    weighed.measured.insert(key, verified.measured);
                     if judged.accepted {
-                        facets.push(Facet {
-                            probability,
+                        round.facets.push(Facet {
+                            probability: verified.evidence.probability(),
                             ..facet
                         });
-                        accepted.push(judged);
-                        stands[i] = true;
+                        round.accepted.push(judged);
+                        round.stands[i] = true;
                         continue;
                     }
-                    improbable.push(judged);
-                    FacetRejection::Improbable { evidence }
+                    weighed.improbable.push(judged);
+                    FacetRejection::Improbable {
+                        evidence: verified.evidence,
+                    }
                 }
                 Err(reason) => reason,
             };
-            if round < ROUNDS
-                && matches!(reason, FacetRejection::ReachesGround { .. })
-                && let Some(tail) = tail_on_ground(
-                    &facet.plane,
-                    &outline.cells,
-                    &competing.arrangement,
-                    ground,
-                    params.min_height_m,
-                )
-            {
-                excluded.push((outline.plane, tail));
-                continue;
-            }
-            let near_ground = matches!(reason, FacetRejection::NearGround { .. });
-            let rejection = RejectedFacet {
-                group: outline.plane,
-                outline: facet.outer,
-                reason,
-            };
-            if near_ground {
-                on_ground.push(rejection);
+            if !is_last && let Some(tail) = self.tail_on_ground(&reason, &facet, outline) {
+                round.excluded.push((outline.plane, tail));
             } else {
-                rejected.push(rejection);
-                excluded.push((outline.plane, outline.cells.clone()));
+                round.reject(outline, facet, reason, &mut weighed.rejected);
             }
         }
-        if excluded.is_empty() || round == ROUNDS {
-            rejected.extend(on_ground);
-            accepted.extend(improbable);
-            let simpler = competing.simplify(delineation, &stands, params);
-            let outlines = simpler
-                .outlines
-                .iter()
-                .zip(stands)
-                .filter(|(_, stands)| *stands);
-            let simple = |(facet, (outline, _)): (Facet, (&Outline, bool))| Facet {
-                probability: facet.probability,
-                ..competing.facet(outline, &simpler)
-            };
-            return Verified {
-                facets: facets.into_iter().zip(outlines).map(simple).collect(),
-                judged: accepted,
-                rejected,
-            };
-        }
-        for (plane, cells) in excluded {
-            labelling.exclude(plane, &cells);
+        round
+    }
+
+    fn judged(&self, facet: &Facet, verified: &VerifiedFacet) -> JudgedFacet {
+        JudgedFacet {
+            outline: facet.outer.clone(),
+            holes: facet.holes.clone(),
+            plane: facet.plane,
+            accepted: verified.evidence.accepts(self.params.least_nats),
+            evidence: verified.evidence.clone(),
+            windows: verified.windows().clone(),
         }
     }
-    unreachable!("the last round returns")
+
+    /// The cells of a facet that lie on the ground, where that is why it is rejected.
+    fn tail_on_ground(
+        &self,
+        reason: &FacetRejection,
+        facet: &Facet,
+        outline: &Outline,
+    ) -> Option<Vec<usize>> {
+        if !matches!(reason, FacetRejection::ReachesGround { .. }) {
+            return None;
+        }
+        tail_on_ground(
+            &facet.plane,
+            &outline.cells,
+            &self.competing.arrangement,
+            self.ground,
+            self.params.min_height_m,
+        )
+    }
+
+    /// The facets of the last round with simpler outlines, and all that was weighed.
+    fn simplified(&self, delineation: Delineation, round: Round, weighed: Weighed) -> Verified {
+        let Weighed {
+            mut rejected,
+            improbable,
+            ..
+        } = weighed;
+        let (mut judged, stands) = (round.accepted, round.stands);
+        rejected.extend(round.on_ground);
+        judged.extend(improbable);
+        let simpler = (self.competing).simplify(delineation, &stands, self.params);
+        let outlines = (simpler.outlines.iter().zip(stands)).filter(|(_, stands)| *stands);
+        let simple = |(facet, (outline, _)): (Facet, (&Outline, bool))| Facet {
+            probability: facet.probability,
+            ..self.competing.facet(outline, &simpler)
+        };
+        Verified {
+            facets: round.facets.into_iter().zip(outlines).map(simple).collect(),
+            judged,
+            rejected,
+        }
+    }
 }
 
 #[cfg(test)]

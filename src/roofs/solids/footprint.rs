@@ -24,10 +24,10 @@ const LEAST_WIDTH_M: f64 = 0.5;
 
 /// Corners and edges nearer than this lie on each other, metres: less than walls are known to, and
 /// more than ten times what welding moves.
-const NEAR_M: f64 = 0.015;
+const TOUCHING_DISTANCE_M: f64 = 0.015;
 
 /// Where two stretches of the outline come nearer than this it is parted, metres.
-const PINCH_M: f64 = 4.0 * NEAR_M;
+const PINCH_M: f64 = 4.0 * TOUCHING_DISTANCE_M;
 
 /// Rings in plan.
 pub(super) type Rings = Vec<Vec<Point2<f64>>>;
@@ -99,8 +99,8 @@ fn area_of(rings: &Rings) -> f64 {
 /// The footprint without small squares around the points where it touches itself.
 fn parted(mut plan: Rings) -> Rings {
     // The sides of a square may touch again.
-    const ROUNDS: usize = 3;
-    for _ in 0..ROUNDS {
+    const PARTING_ROUNDS: usize = 3;
+    for _ in 0..PARTING_ROUNDS {
         let points = pinches(&plan);
         if points.is_empty() {
             break;
@@ -117,7 +117,7 @@ fn parted(mut plan: Rings) -> Rings {
 /// Corners that lie on a stretch of outline which is not their own.
 fn pinches(plan: &Rings) -> Vec<Point2<f64>> {
     /// Stretches that follow each other within so many metres are one.
-    const OWN_M: f64 = 10.0 * PINCH_M;
+    const OWN_STRETCH_M: f64 = 10.0 * PINCH_M;
     let mut found: Vec<Point2<f64>> = Vec::new();
     for (r, ring) in plan.iter().enumerate() {
         let n = ring.len();
@@ -134,7 +134,7 @@ fn pinches(plan: &Rings) -> Vec<Point2<f64>> {
             let touches = plan.iter().enumerate().any(|(s, other)| {
                 (0..other.len()).any(|j| {
                     let end = (j + 1) % other.len();
-                    let own = r == s && along(i, j).min(along(i, end)) < OWN_M;
+                    let own = r == s && along(i, j).min(along(i, end)) < OWN_STRETCH_M;
                     !own && distance(p, [&other[j], &other[end]]) < PINCH_M
                 })
             });
@@ -170,7 +170,9 @@ fn aligned(plan: Rings, roofs: &[Rings]) -> Rings {
     let nearest = |to: &Point2<f64>, among: &[Point2<f64>]| {
         let near = among.iter().map(|p| ((p - to).norm(), *p));
         let nearest = near.min_by(|p, q| p.0.total_cmp(&q.0));
-        nearest.filter(|(d, _)| *d < NEAR_M).map(|(_, p)| p)
+        nearest
+            .filter(|(d, _)| *d < TOUCHING_DISTANCE_M)
+            .map(|(_, p)| p)
     };
     let mut placed = Vec::new();
     let mut place = |p: &Point2<f64>| {
@@ -186,7 +188,7 @@ fn aligned(plan: Rings, roofs: &[Rings]) -> Rings {
     let through = |a: Point2<f64>, b: Point2<f64>| {
         let along = b - a;
         let mut stops: Vec<(f64, Point2<f64>)> = (corners.iter())
-            .filter(|c| distance(c, [&a, &b]) < NEAR_M && **c != a && **c != b)
+            .filter(|c| distance(c, [&a, &b]) < TOUCHING_DISTANCE_M && **c != a && **c != b)
             .map(|c| (along.dot(&(c - a)), *c))
             .collect();
         stops.sort_by(|p, q| p.0.total_cmp(&q.0));

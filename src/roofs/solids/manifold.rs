@@ -17,7 +17,7 @@ use crate::roofs::model::WELD_M;
 
 /// Corners within this distance of the straight line between their neighbours are left out where no
 /// other face needs them, metres: a tenth of the step in which coordinates are written.
-const STRAIGHT_M: f64 = 1e-5;
+const STRAIGHT_DEVIATION_M: f64 = 1e-5;
 
 /// Sine of the largest angle between a wall and the vertical plane of those that it is merged with:
 /// ten degrees, half of what other programs allow between a face and its triangles.
@@ -330,7 +330,8 @@ fn drop_straight_corners(shell: &mut Shell) -> bool {
         [(before, after), (after2, before2)] if before == before2 && after == after2 => {
             let [p, q, r] = [before as usize, corner, after as usize].map(|i| shell.corners[i]);
             let along = r - p;
-            (q - p).cross(&along).norm() <= STRAIGHT_M * along.norm() && (q - p).dot(&(r - q)) > 0.0
+            (q - p).cross(&along).norm() <= STRAIGHT_DEVIATION_M * along.norm()
+                && (q - p).dot(&(r - q)) > 0.0
         }
         _ => false,
     };

@@ -65,16 +65,16 @@ impl PlanPartition {
     pub(super) fn new(facets: &[Facet]) -> (Self, Vec<(usize, SolidRejection)>) {
         /// Welding moves edges by up to [`WELD_M`], so that some cross again; cutting those twice
         /// is enough.
-        const ROUNDS: usize = 3;
+        const CUTTING_ROUNDS: usize = 3;
         let mut rejected = Vec::new();
         let mut parts = flat_parts(facets, &mut rejected);
         let mut welder = Welder::default();
         let mut partition = Self::default();
-        for round in 1..=ROUNDS {
+        for round in 1..=CUTTING_ROUNDS {
             welder = Welder::default();
             partition = Self::welded(&without_overlaps(parts), &mut welder);
             partition.insert_t_junctions();
-            if round == ROUNDS || partition.conflicting().is_empty() {
+            if round == CUTTING_ROUNDS || partition.conflicting().is_empty() {
                 break;
             }
             parts = partition.parts();

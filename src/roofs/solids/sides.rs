@@ -8,10 +8,10 @@ use crate::base::math::hypot;
 use crate::roofs::model::Facet;
 
 /// Two edges are one side where the sine of their turn is less than this.
-const STRAIGHT: f64 = 0.02;
+const TURN_SINE: f64 = 0.02;
 /// Their heights differ by less than this where they meet, metres: a higher roof has eaves, and a
 /// wall, of its own.
-const STEP_M: f64 = 0.1;
+const STEP_HEIGHT_M: f64 = 0.1;
 
 /// A straight stretch of a building's outline; the building is to its left.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +61,7 @@ impl Side {
     pub fn is_level(&self) -> bool {
         let z = |f: fn(f64, f64) -> f64, start| self.rim.iter().map(|p| p.z).fold(start, f);
         let rise = z(f64::max, f64::MIN) - z(f64::min, f64::MAX);
-        rise < STEP_M + STRAIGHT * self.length()
+        rise < STEP_HEIGHT_M + TURN_SINE * self.length()
     }
 }
 
@@ -107,8 +107,8 @@ fn continues(first: &[Point3<f64>], then: &[Point3<f64>]) -> bool {
     let (u, v) = ((first[1] - first[0]).xy(), (then[1] - then[0]).xy());
     let lengths = hypot(u.x, u.y) * hypot(v.x, v.y);
     key(&first[1]) == key(&then[0])
-        && (first[1].z - then[0].z).abs() < STEP_M
-        && u.perp(&v).abs() < STRAIGHT * lengths
+        && (first[1].z - then[0].z).abs() < STEP_HEIGHT_M
+        && u.perp(&v).abs() < TURN_SINE * lengths
         && u.dot(&v) > 0.0
 }
 
@@ -123,7 +123,7 @@ pub(super) fn mitre(
     // n_u . x = d_u and n_v . x = d_v, with n a quarter turn to the left of the direction.
     let x = (v * depths[0] - u * depths[1]) / turn;
     let mitred = corner + x;
-    (turn.abs() > STRAIGHT && mitred.coords.iter().all(|c| c.is_finite())).then_some(mitred)
+    (turn.abs() > TURN_SINE && mitred.coords.iter().all(|c| c.is_finite())).then_some(mitred)
 }
 
 #[cfg(test)]

@@ -13,12 +13,12 @@ use crate::roofs::model::{Solid, triangulate};
 pub const WRITTEN_STEP_M: f64 = 1e-4;
 
 /// Corners nearer than this count as one elsewhere, metres (val3dity's default).
-const SNAP_M: f64 = 1e-3;
+const CORNER_SNAP_M: f64 = 1e-3;
 /// Largest distance of a corner from the plane of its face, metres (val3dity's default).
-const PLANAR_M: f64 = 1e-2;
+const PLANARITY_M: f64 = 1e-2;
 /// Cosine of the largest angle between the normals of a face and of its triangles: 20 degrees
 /// (val3dity's default).
-const LEAST_COS: f64 = 0.939_692_620_785_908_4;
+const TRIANGLE_COSINE: f64 = 0.939_692_620_785_908_4;
 /// A triangulation covers its face if their vector areas differ by less, square metres.
 const AREA_M2: f64 = 1e-6;
 
@@ -50,8 +50,10 @@ fn corners_are_apart(solid: &Solid) -> bool {
     let mut corners: Vec<&Point3<f64>> = solid.vertices.iter().collect();
     corners.sort_by(|p, q| p.x.total_cmp(&q.x));
     corners.iter().enumerate().all(|(i, p)| {
-        let near = corners[i + 1..].iter().take_while(|q| q.x - p.x < SNAP_M);
-        near.into_iter().all(|q| (*q - *p).norm() >= SNAP_M)
+        let near = corners[i + 1..]
+            .iter()
+            .take_while(|q| q.x - p.x < CORNER_SNAP_M);
+        near.into_iter().all(|q| (*q - *p).norm() >= CORNER_SNAP_M)
     })
 }
 
@@ -82,7 +84,7 @@ fn sound_triangles(solid: &Solid, face: usize) -> Option<Vec<[u32; 3]>> {
     let normal = whole.try_normalize(1e-12)?;
     let heights = (corners.iter()).map(|v| normal.dot(&solid.vertices[*v as usize].coords));
     let mean = heights.clone().sum::<f64>() / corners.len() as f64;
-    let is_planar = heights.into_iter().all(|h| (h - mean).abs() <= PLANAR_M);
+    let is_planar = heights.into_iter().all(|h| (h - mean).abs() <= PLANARITY_M);
     let triangles: Vec<[u32; 3]> = (triangulate(solid, face).into_iter())
         .map(|t| t.map(|i| corners[i as usize]))
         .collect();
@@ -91,7 +93,7 @@ fn sound_triangles(solid: &Solid, face: usize) -> Option<Vec<[u32; 3]>> {
     let looks_along = |t: &[u32; 3]| {
         let area = area(t);
         // One on a line has no normal.
-        area.norm() < 1e-12 || area.dot(&normal) >= LEAST_COS * area.norm()
+        area.norm() < 1e-12 || area.dot(&normal) >= TRIANGLE_COSINE * area.norm()
     };
     let is_sound =
         is_planar && (covered - whole).norm() < AREA_M2 && triangles.iter().all(looks_along);

@@ -18,7 +18,7 @@ use crate::base::math::{atan2, sin_cos};
 /// the checks of other programs, and nobody sees half a centimetre.
 const DRAWN_BACK_M: f64 = 5e-3;
 /// Edges shorter than so many times that stay as they are.
-const SHORTEST: f64 = 4.0;
+const SHORTEST_EDGE_RATIO: f64 = 4.0;
 
 /// A stretch of outside at a vertex, counter-clockwise between two borders.
 struct Outside {
@@ -42,7 +42,7 @@ impl PlanPartition {
                 let ends = [joined.from.0, joined.to.0].map(|v| self.positions[v as usize]);
                 if ends
                     .iter()
-                    .any(|p| (p - at).norm() < SHORTEST * DRAWN_BACK_M)
+                    .any(|p| (p - at).norm() < SHORTEST_EDGE_RATIO * DRAWN_BACK_M)
                 {
                     continue;
                 }

@@ -4,11 +4,11 @@ use crate::base::evidence::WallEvidence;
 use crate::base::math::exp;
 
 /// A wall is seen where it is known within this distance, metres: two pixels of a survey.
-pub const WITHIN_M: f64 = 0.15;
+pub const DEPTH_TOLERANCE_M: f64 = 0.15;
 
 /// Odds of that, nats. Assumption: ln 3, as for the lines of the result; a wall put in a wrong
 /// place misleads more than one that is left under the eave.
-pub const LEAST_NATS: f64 = 1.0986;
+pub const LEAST_ODDS_NATS: f64 = 1.0986;
 
 /// Half a step between depths: what lies at the edge of a window counts to it.
 const ROUNDING_M: f64 = 0.01;
@@ -18,7 +18,7 @@ const ROUNDING_M: f64 = 0.01;
 pub(super) struct DepthEstimate {
     /// Behind the rim of the roof, metres; 0 where it may stand before it.
     pub depth_m: f64,
-    /// Probability that it stands within [`WITHIN_M`] of the likeliest place.
+    /// Probability that it stands within [`DEPTH_TOLERANCE_M`] of the likeliest place.
     pub probability: f64,
     /// Standard deviation within that, metres.
     pub sigma_m: f64,
@@ -37,7 +37,7 @@ impl DepthEstimate {
         let total: f64 = density.iter().sum();
         let within = |middle: f64| {
             let all = depths.iter().zip(&density);
-            all.filter(move |(d, _)| (**d - middle).abs() < WITHIN_M + ROUNDING_M)
+            all.filter(move |(d, _)| (**d - middle).abs() < DEPTH_TOLERANCE_M + ROUNDING_M)
         };
         let share = |middle: f64| within(middle).map(|(_, p)| p).sum::<f64>() / total;
         let likeliest = depths.iter().copied().fold((0.0, f64::MIN), |best, depth| {
@@ -59,7 +59,7 @@ impl DepthEstimate {
 
     /// Do the views show it?
     pub(super) fn is_seen(&self) -> bool {
-        self.probability >= 1.0 - 1.0 / (1.0 + exp(LEAST_NATS))
+        self.probability >= 1.0 - 1.0 / (1.0 + exp(LEAST_ODDS_NATS))
     }
 }
 

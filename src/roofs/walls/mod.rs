@@ -15,9 +15,9 @@
 //! So a depth d claims of every such ray what it hits. Views are compared on the wall at each
 //! depth, and on the ground up to there, in long narrow windows; what their correlations say is a
 //! fitted table, and the nats of all windows add to the logarithm of the prior. A wall is seen
-//! where the odds that it stands within [`WITHIN_M`] of the likeliest place reach [`LEAST_NATS`].
-//! Otherwise its depth is assumed: that of the seen walls of the building, under the eave where
-//! none is.
+//! where the odds that it stands within [`DEPTH_TOLERANCE_M`] of the likeliest place reach
+//! [`LEAST_ODDS_NATS`]. Otherwise its depth is assumed: that of the seen walls of the building,
+//! under the eave where none is.
 //!
 //! ```text
 //! strips  the windows of a side, and what they say of each depth
@@ -27,7 +27,7 @@
 mod depth;
 mod strips;
 
-pub use depth::{LEAST_NATS, WITHIN_M};
+pub use depth::{DEPTH_TOLERANCE_M, LEAST_ODDS_NATS};
 
 use nalgebra::{Point3, Vector3};
 

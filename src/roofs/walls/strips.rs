@@ -13,7 +13,7 @@ use crate::base::math::{larger, smaller};
 use crate::orienting::scene::Scene;
 use crate::photographs::camera::Camera;
 use crate::photographs::raster::{Outside, Warp};
-use crate::planes::photoconsistency::residual_variance;
+use crate::planes::photoconsistency::{LEAST_VARIANCE, MAX_VIEWS, residual_variance};
 use crate::roofs::model::Occluders;
 use crate::roofs::solids::{RIM_M, Side};
 
@@ -28,17 +28,11 @@ const LEAST_COLUMNS: usize = 20;
 /// metres of it would be two pixels.
 const LEAST_TANGENT: f64 = 0.05;
 
-/// As many views are compared as elsewhere.
-const MAX_VIEWS: usize = 6;
-
 /// Rows on a wall are no further apart, metres.
 const HIGHEST_ROW_M: f64 = 0.6;
 
 /// Lower roofs show no wall, metres.
 const LEAST_HEIGHT_M: f64 = 1.5;
-
-/// Variance of grey values below which they are taken as constant.
-const LEAST_VARIANCE: f32 = 1e-7;
 
 /// A view that looks under the side.
 struct SideView<'a> {
@@ -79,6 +73,25 @@ struct Raster<'a> {
     depth: &'a dyn Fn(f64) -> f64,
 }
 
+/// The views that look under a side at a point of its wall, those whose rays rise least first; with
+/// the horizontal metres of their rays a metre of height.
+fn views_below(scene: &Scene, middle: &Point3<f64>, inward: &Vector3<f64>) -> Vec<(ViewId, f64)> {
+    let tangent = |camera: &Camera| {
+        let ray = camera.center - middle;
+        let shows = camera
+            .project(middle)
+            .is_some_and(|p| camera.contains(&p, 0.0));
+        (shows && ray.z > 0.0).then(|| -ray.dot(inward) / ray.z)
+    };
+    let mut views: Vec<(ViewId, f64)> = (scene.view_ids())
+        .filter_map(|v| Some((v, tangent(scene.camera(v))?)))
+        .filter(|(_, t)| *t > LEAST_TANGENT)
+        .collect();
+    views.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    views.truncate(MAX_VIEWS);
+    views
+}
+
 impl<'a> Strips<'a> {
     /// `None` where fewer than two views look under the side, or it is too short or too low.
     pub(super) fn new(
@@ -97,19 +110,7 @@ impl<'a> Strips<'a> {
         }
         let mut middle = nalgebra::center(&side.start(), &side.end());
         middle.z = 0.5 * (lowest + highest);
-        let tangent = |camera: &Camera| {
-            let ray = camera.center - middle;
-            let shows = camera
-                .project(&middle)
-                .is_some_and(|p| camera.contains(&p, 0.0));
-            (shows && ray.z > 0.0).then(|| -ray.dot(&inward) / ray.z)
-        };
-        let mut views: Vec<(ViewId, f64)> = (scene.view_ids())
-            .filter_map(|v| Some((v, tangent(scene.camera(v))?)))
-            .filter(|(_, t)| *t > LEAST_TANGENT)
-            .collect();
-        views.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        views.truncate(MAX_VIEWS);
+        let views = views_below(scene, &middle, &inward);
         let pixels = views
             .iter()
             .map(|(v, _)| scene.camera(*v).ground_pixel(&middle));

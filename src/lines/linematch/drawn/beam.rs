@@ -11,13 +11,14 @@ use crate::orienting::scene::Scene;
 
 /// Step of a height, as the parallax of the view that shows most of it, px. Assumption: measuring
 /// along a candidate reaches as far (`lines2d::guided`).
-const STEP_PX: f64 = 1.25;
+const HEIGHT_STEP_PX: f64 = 1.25;
 /// Most heights of an end: the square of them is looked at.
 const MOST_HEIGHTS: usize = 160;
 /// Candidates that are fitted. Assumption: so many edges run side by side on a roof and about it.
-const MOST: usize = 16;
-/// Candidates this many heights from a better one are the same.
-const SAME: usize = 2;
+const CANDIDATES_FITTED: usize = 16;
+/// Candidates this many heights from a better one are the same. Assumption: a peak of the score is
+/// as wide as the places from which one edge is found.
+const NEIGHBOUR_HEIGHTS: usize = 2;
 
 /// The likeliest lines of the beam, the best one first.
 pub(super) fn candidates(
@@ -49,12 +50,13 @@ pub(super) fn candidates(
     let mut chosen: Vec<usize> = Vec::new();
     for k in order {
         let is_same = |&c: &usize| {
-            (c / count).abs_diff(k / count) <= SAME && (c % count).abs_diff(k % count) <= SAME
+            (c / count).abs_diff(k / count) <= NEIGHBOUR_HEIGHTS
+                && (c % count).abs_diff(k % count) <= NEIGHBOUR_HEIGHTS
         };
         if !chosen.iter().any(is_same) {
             chosen.push(k);
         }
-        if chosen.len() == MOST {
+        if chosen.len() == CANDIDATES_FITTED {
             break;
         }
     }
@@ -69,5 +71,5 @@ fn heights(scene: &Scene, view: ViewId, place: &Point2<f64>, z_range: [f64; 2]) 
         Some((images[1]? - images[0]?).norm())
     };
     let most = (scene.view_ids()).filter_map(parallax).fold(0.0, f64::max);
-    ((most / STEP_PX).ceil() as usize + 1).clamp(2, MOST_HEIGHTS)
+    ((most / HEIGHT_STEP_PX).ceil() as usize + 1).clamp(2, MOST_HEIGHTS)
 }

@@ -45,7 +45,7 @@ pub(super) fn on_plane(camera: &Camera, edge: &Segment2, plane: &Plane) -> Optio
 /// Either end is moved by up to so many standard deviations of the hand.
 const REACH_SIGMAS: f64 = 2.0;
 /// Step of a move, px: half of what the step across a line is measured over on either side.
-const STEP_PX: f64 = 1.0;
+const MOVE_STEP_PX: f64 = 1.0;
 /// Most moves to either side: the square of all is tried.
 const MOST_MOVES: f64 = 40.0;
 
@@ -104,7 +104,7 @@ fn strongest_near(seen: &View, drawn: &DrawnEdge) -> Segment2 {
 /// The moves of an end that are tried, px.
 fn moves(sigma_px: f64) -> impl Iterator<Item = f64> {
     let reach = REACH_SIGMAS * sigma_px;
-    let each_side = (reach / STEP_PX).ceil().clamp(1.0, MOST_MOVES);
+    let each_side = (reach / MOVE_STEP_PX).ceil().clamp(1.0, MOST_MOVES);
     let step = reach / each_side;
     (0..=2 * each_side as usize).map(move |i| (i as f64 - each_side) * step)
 }

@@ -12,7 +12,7 @@ use crate::lines::lines2d::GuidedEdge;
 use crate::lines::lines3d::LineFit;
 
 /// Number of adoptions and fits. Assumption: the second round changes few lines, a third none.
-const ROUNDS: usize = 2;
+const ADOPTION_ROUNDS: usize = 2;
 
 /// Least sum of the views with an edge and the views with a detected segment: three and three, or
 /// four and two where edges were measured again.
@@ -23,7 +23,8 @@ const MIN_EVIDENCE: usize = 6;
 const MIN_EVIDENCE_OF_THREE: usize = 5;
 
 /// Distance from a line, in gates, within which segments belong to it and start no other line.
-const OWN: f64 = 1.5;
+/// Assumption: they may be half a gate beyond what supports it.
+const OWN_GATES: f64 = 1.5;
 
 /// Completes a hypothesis from some of its segments; `taken` names those of other lines.
 pub(crate) fn complete_line(
@@ -33,12 +34,12 @@ pub(crate) fn complete_line(
     taken: IsTaken,
 ) -> Result<CompletedLine, MatchRejection> {
     let (mut fit, mut segments) = context.fit_consistent(start, seeds)?;
-    for _ in 0..ROUNDS {
+    for _ in 0..ADOPTION_ROUNDS {
         let adopted = context.adopt(&fit.line, &segments, &[], 1.0, taken);
         (fit, segments) = context.fit_consistent(&fit.line, &adopted)?;
     }
     let (fit, edges) = context.measure_again(fit, &segments, taken)?;
-    let segments = context.adopt(&fit.line, &segments, &edges, OWN, taken);
+    let segments = context.adopt(&fit.line, &segments, &edges, OWN_GATES, taken);
     let evidence = edges.len() + views_of(&segments);
     if evidence < context.least_evidence() {
         return Err(MatchRejection::TooFewSegments);
@@ -80,7 +81,7 @@ impl MatchContext<'_> {
         taken: IsTaken,
     ) -> Result<(LineFit, Vec<GuidedEdge>), MatchRejection> {
         let mut edges = Vec::new();
-        for _ in 0..ROUNDS {
+        for _ in 0..ADOPTION_ROUNDS {
             let found: Vec<GuidedEdge> = (self.scene.view_ids())
                 .filter_map(|view| self.measure(&fit.line, segments, view, taken))
                 .collect();

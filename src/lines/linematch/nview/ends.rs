@@ -11,12 +11,13 @@ use crate::orienting::scene::Scene;
 
 /// Range about the end of a stretch in which the edge may end, edgels: the piece before it, and
 /// half a piece beyond it.
-const BEFORE: usize = PIECE_PX as usize + 1;
-const BEYOND: usize = PIECE_PX as usize / 2;
-/// Number of edgels farther inside from which the size of the step is taken.
-const INSIDE: usize = 3 * PIECE_PX as usize;
-/// Fewest of them.
-const LEAST_INSIDE: usize = PIECE_PX as usize;
+const EDGELS_BEFORE: usize = PIECE_PX as usize + 1;
+const EDGELS_BEYOND: usize = PIECE_PX as usize / 2;
+/// Number of edgels farther inside from which the size of the step is taken. Assumption: three
+/// pieces.
+const EDGELS_INSIDE: usize = 3 * PIECE_PX as usize;
+/// Fewest of them: a piece.
+const LEAST_EDGELS_INSIDE: usize = PIECE_PX as usize;
 /// Half the base of the step across the line, px.
 const BASE_PX: f64 = 1.0;
 
@@ -27,22 +28,24 @@ pub(super) fn located_ends(
     profile: &LineProfile,
     (start, end): (usize, usize),
 ) -> (usize, usize) {
-    if end - start < 2 * BEFORE + LEAST_INSIDE {
+    if end - start < 2 * EDGELS_BEFORE + LEAST_EDGELS_INSIDE {
         return (start, end);
     }
-    let inner = (end - BEFORE).saturating_sub(INSIDE).max(start + BEFORE);
-    let last = (end + BEYOND).min(profile.t.len() - 1);
+    let inner = (end - EDGELS_BEFORE)
+        .saturating_sub(EDGELS_INSIDE)
+        .max(start + EDGELS_BEFORE);
+    let last = (end + EDGELS_BEYOND).min(profile.t.len() - 1);
     let forward: Vec<usize> = (inner..=last).collect();
-    let outer = (start + BEFORE + INSIDE).min(end - BEFORE);
-    let first = start.saturating_sub(BEYOND);
+    let outer = (start + EDGELS_BEFORE + EDGELS_INSIDE).min(end - EDGELS_BEFORE);
+    let first = start.saturating_sub(EDGELS_BEYOND);
     let backward: Vec<usize> = (first..=outer).rev().collect();
     let ends_at = |edgels: &[usize], inside: usize| {
         let steps = steps(scene, profile, edgels, inside)?;
         Some(edgels[last_of_edge(&steps)])
     };
     (
-        ends_at(&backward, outer + 1 - start - BEFORE).unwrap_or(start),
-        ends_at(&forward, end + 1 - BEFORE - inner).unwrap_or(end),
+        ends_at(&backward, outer + 1 - start - EDGELS_BEFORE).unwrap_or(start),
+        ends_at(&forward, end + 1 - EDGELS_BEFORE - inner).unwrap_or(end),
     )
 }
 

@@ -11,7 +11,7 @@ use crate::lines::lines3d::ProjectedLine;
 use crate::orienting::scene::{Scene, View};
 
 /// Number of measurements and fits: the second measures along the first one's line.
-const ROUNDS: usize = 2;
+const MEASUREMENT_ROUNDS: usize = 2;
 /// A step in grey values or in colour, either side of it bright.
 const POLARITIES: [(SegmentKind, bool); 4] = [
     (SegmentKind::Edge, false),
@@ -39,13 +39,10 @@ pub(crate) fn complete_from_edges(
         z_range,
         params,
         fitting,
-        compatibility: Compatibility {
-            contrast: false,
-            kind: false,
-        },
+        compatibility: Compatibility::ANY,
     };
     let (mut line, mut found) = (*start, None);
-    for _ in 0..ROUNDS {
+    for _ in 0..MEASUREMENT_ROUNDS {
         let others = scene.view_ids().filter(|view| *view != own.view);
         let mut edges: Vec<GuidedEdge> = others
             .filter_map(|view| measured(view, scene.view(view), &line))

@@ -8,6 +8,8 @@
 //! "Edge detection by Helmholtz principle", with the distribution taken locally instead of
 //! globally).
 
+use crate::base::math::RAYLEIGH_MEDIAN;
+
 /// Side of a block, px. Statistics are pooled over 3 x 3 blocks: a roof plane's size.
 const BLOCK_PX: usize = 32;
 /// Bins of the gradient strength; the last one is open.
@@ -18,10 +20,6 @@ const BIN_WIDTH: f32 = 1.0 / 2048.0;
 /// Gradient noise never counts as less than this, grey values per px: rounding to 8 bits alone has
 /// a standard deviation of 1/255/sqrt(12), and a quarter of it is left after smoothing.
 const MIN_NOISE: f32 = 0.25 / 255.0 / 3.464_101_6;
-/// Median of a Rayleigh distribution, the strength of a gradient whose components are Gaussian with
-/// standard deviation 1.
-const RAYLEIGH_MEDIAN: f32 = 1.177_41;
-
 /// Statistics of a strength (of the gradient, of the second derivative) on a grid of blocks.
 pub(crate) struct LocalStrengths {
     columns: usize,
@@ -129,7 +127,7 @@ fn noise_of(counts: &[u32; BINS]) -> f32 {
         }
         below += n;
     }
-    (median / RAYLEIGH_MEDIAN).max(MIN_NOISE)
+    (median / RAYLEIGH_MEDIAN as f32).max(MIN_NOISE)
 }
 
 fn surprisal_of(counts: &[u32; BINS]) -> [f32; BINS] {

@@ -18,13 +18,14 @@ pub(super) struct GroundPoints {
 /// Points that a cell has on average.
 const POINTS_A_CELL: f64 = 2.0;
 /// Finest cell, metres: the ground is laid in blocks of a metre.
-const FINEST_M: f64 = 0.5;
+const FINEST_CELL_M: f64 = 0.5;
 /// Most cells of a grid.
 const MOST_CELLS: f64 = 4e6;
 /// Widest gap that is closed, metres. Assumption: halls are as wide.
 const WIDEST_GAP_M: f64 = 60.0;
-/// Points lie along a line if their extent across it is a smaller share of that along it.
-const FLAT: f64 = 0.02;
+/// Points lie along a line where the determinant of their scatter is a smaller share of its squared
+/// trace: it is a quarter of that where they spread evenly. Assumption.
+const COLLINEAR_SHARE: f64 = 0.02;
 
 impl GroundPoints {
     pub(super) fn new() -> Self {
@@ -59,7 +60,10 @@ impl GroundPoints {
         let ([x0, x1], [y0, y1]) = (range(0), range(1));
         let area = (x1 - x0) * (y1 - y0);
         let of_density = (POINTS_A_CELL * area / points.len() as f64).sqrt();
-        let cell = larger(larger(of_density, FINEST_M), (area / MOST_CELLS).sqrt());
+        let cell = larger(
+            larger(of_density, FINEST_CELL_M),
+            (area / MOST_CELLS).sqrt(),
+        );
         let [columns, rows] = [x1 - x0, y1 - y0].map(|size| (size / cell).floor() + 1.0);
         // Neither is true of what is no number.
         let is_grid = columns >= 2.0 && rows >= 2.0 && columns * rows <= 2.0 * MOST_CELLS;
@@ -174,7 +178,7 @@ fn height_at_origin(points: impl Iterator<Item = [f64; 3]> + Clone) -> f64 {
     let determinant = xx * yy - xy * xy;
     let extent = xx + yy;
     let reaches = hypot(mean[0], mean[1]) <= (extent / n).sqrt();
-    if determinant <= FLAT * extent * extent || !reaches {
+    if determinant <= COLLINEAR_SHARE * extent * extent || !reaches {
         return mean[2];
     }
     let gradient = [

@@ -25,11 +25,11 @@ pub(super) struct Header {
 }
 
 /// Shortest header, of versions 1.0 to 1.2, and that of 1.4.
-const SHORTEST: usize = 227;
-const OF_1_4: usize = 375;
+const SHORTEST_HEADER: usize = 227;
+const HEADER_OF_1_4: usize = 375;
 /// Bytes of the shortest record of each point format.
 const LENGTHS: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
-/// Heads of variable records and of extended ones.
+/// Bytes of the heads of variable records and of extended ones (LAS 1.4).
 const VARIABLE_HEAD: usize = 54;
 const EXTENDED_HEAD: usize = 60;
 /// Records of a projection, after GeoTIFF and as well-known text.
@@ -40,9 +40,9 @@ const WELL_KNOWN_TEXT: u16 = 2112;
 impl Header {
     /// The header, if what it states agrees with itself and with the file's length.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, String> {
-        if bytes.len() < SHORTEST {
+        if bytes.len() < SHORTEST_HEADER {
             return Err(format!(
-                "the file ends within its header of {SHORTEST} bytes"
+                "the file ends within its header of {SHORTEST_HEADER} bytes"
             ));
         }
         let [major, minor] = [bytes[24], bytes[25]];
@@ -52,7 +52,11 @@ impl Header {
             ));
         }
         let header_size = usize::from(u16_at(bytes, 94));
-        let shortest = if minor == 4 { OF_1_4 } else { SHORTEST };
+        let shortest = if minor == 4 {
+            HEADER_OF_1_4
+        } else {
+            SHORTEST_HEADER
+        };
         if header_size < shortest || header_size > bytes.len() {
             return Err(format!("it states a header of {header_size} bytes"));
         }
@@ -74,13 +78,7 @@ impl Header {
         if data < header_size || data > bytes.len() {
             return Err(format!("its points begin at byte {data}, which it has not"));
         }
-        let mut count = u64::from(u32_at(bytes, 107));
-        let mut extended = (0, 0);
-        if minor == 4 {
-            extended = (u64_at(bytes, 235), u32_at(bytes, 243));
-            let of_1_4 = u64_at(bytes, 247);
-            count = if of_1_4 == 0 { count } else { of_1_4 };
-        }
+        let (count, extended) = counts(bytes, minor);
         let three = |at: usize| [0, 8, 16].map(|k| f64_at(bytes, at + k));
         let (scale, offset) = (three(131), three(155));
         if !scale.iter().chain(&offset).all(|v| v.is_finite()) || scale.contains(&0.0) {
@@ -180,6 +178,17 @@ impl Header {
         }
         None
     }
+}
+
+/// The number of points, and where the extended variable records begin and how many they are.
+fn counts(bytes: &[u8], minor: u8) -> (u64, (u64, u32)) {
+    let count = u64::from(u32_at(bytes, 107));
+    if minor < 4 {
+        return (count, (0, 0));
+    }
+    let of_1_4 = u64_at(bytes, 247);
+    let count = if of_1_4 == 0 { count } else { of_1_4 };
+    (count, (u64_at(bytes, 235), u32_at(bytes, 243)))
 }
 
 fn taken<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {

@@ -97,14 +97,51 @@ pub(super) fn read_surface(
     Ok(points.finished())
 }
 
+const COPY_AGAIN: &str = "copy the file again, or export it again";
+
 /// Hands over every record of a file; returns how many there are.
 fn each_point(
     file: &InputFile,
     system: &WorldSystem,
     take: &mut dyn FnMut(&Header, &[u8]),
 ) -> Result<u64> {
+    let damaged = |problem: String| refusal(&file.path, &problem, COPY_AGAIN);
+    let bytes = &file.bytes[..];
+    let header = header_of(file, system)?;
+    let records = header.records(bytes);
+    match header.is_compressed {
+        false => {
+            let length = usize::from(header.record_length);
+            let held = (records.len() / length) as u64;
+            if held < header.count {
+                let problem = format!("the file ends after {held} of {} points", header.count);
+                return Err(damaged(problem));
+            }
+            let all = records.chunks_exact(length);
+            all.take(header.count as usize)
+                .for_each(|record| take(&header, record));
+        }
+        true => {
+            let mut compressed = Compressed::new(&header, bytes).map_err(damaged)?;
+            for read in 0..header.count {
+                let record = compressed.next().map_err(|problem| {
+                    damaged(format!(
+                        "point {} of {} cannot be decompressed: {problem}",
+                        read + 1,
+                        header.count
+                    ))
+                })?;
+                take(&header, record);
+            }
+        }
+    }
+    Ok(header.count)
+}
+
+/// The header of a file in the system of the scene, whose points are no more than can be read.
+fn header_of(file: &InputFile, system: &WorldSystem) -> Result<Header> {
     let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
-    let damaged = |problem: String| refuse(&problem, "copy the file again, or export it again");
+    let damaged = |problem: String| refuse(&problem, COPY_AGAIN);
     let bytes = &file.bytes[..];
     let header = Header::read(bytes).map_err(damaged)?;
     let stated = header.system(bytes).map_err(|problem| {
@@ -138,44 +175,19 @@ fn each_point(
         );
         return Err(damaged(problem));
     }
-    match header.is_compressed {
-        false => {
-            let length = usize::from(header.record_length);
-            let held = (records.len() / length) as u64;
-            if held < header.count {
-                let problem = format!("the file ends after {held} of {} points", header.count);
-                return Err(damaged(problem));
-            }
-            let all = records.chunks_exact(length);
-            all.take(header.count as usize)
-                .for_each(|record| take(&header, record));
-        }
-        true => {
-            let mut compressed = Compressed::new(&header, bytes).map_err(damaged)?;
-            for read in 0..header.count {
-                let record = compressed.next().map_err(|problem| {
-                    damaged(format!(
-                        "point {} of {} cannot be decompressed: {problem}",
-                        read + 1,
-                        header.count
-                    ))
-                })?;
-                take(&header, record);
-            }
-        }
-    }
-    Ok(header.count)
+    Ok(header)
 }
 
 /// The classes that points have instead, the most frequent ones.
 fn listed(others: &BTreeMap<u8, u64>) -> String {
-    const MOST_NAMED: usize = 4;
+    // A refusal names no more. Assumption.
+    const MOST_CLASSES_NAMED: usize = 4;
     let mut all: Vec<(u8, u64)> = others
         .iter()
         .map(|(class, count)| (*class, *count))
         .collect();
     all.sort_by_key(|&(class, count)| (std::cmp::Reverse(count), class));
-    let names: Vec<String> = (all.iter().take(MOST_NAMED))
+    let names: Vec<String> = (all.iter().take(MOST_CLASSES_NAMED))
         .map(|&(class, count)| match class_name(class) {
             Some(name) => format!("{count} are {name} ({class})"),
             None => format!("{count} are of class {class}"),

@@ -3,9 +3,9 @@
 use nalgebra::{Point3, Vector3};
 
 /// Squares in which points are counted, metres. Assumption: half of what tells roofs apart.
-const SQUARE_M: f64 = 0.5;
+const SQUARE_SIDE_M: f64 = 0.5;
 /// Most points that a square keeps, evenly by height: a wall and the roof above it keep both.
-const MOST_IN_SQUARE: usize = 3;
+const MOST_POINTS_IN_SQUARE: usize = 3;
 /// At most so many points are kept, 48 MB, and twice as many before they are thinned.
 const MOST_POINTS: usize = 4_000_000;
 
@@ -20,14 +20,14 @@ impl Thinned {
     pub(super) fn new(within: Option<[f64; 4]>) -> Self {
         Self {
             within,
-            square_m: SQUARE_M,
+            square_m: SQUARE_SIDE_M,
             points: Vec::new(),
         }
     }
 
     /// Adds a point; what is no number or lies outside of the box is left out.
     pub(super) fn push(&mut self, p: Vector3<f64>) {
-        let is_near = |v: f64| v.abs() < FARTHEST_M;
+        let is_near = |v: f64| v.abs() < FARTHEST_POINT_M;
         let is_inside = (self.within)
             .is_none_or(|[x0, y0, x1, y1]| (x0..=x1).contains(&p.x) && (y0..=y1).contains(&p.y));
         if !(is_inside && p.iter().all(|v| is_near(*v))) {
@@ -56,7 +56,7 @@ impl Thinned {
             let mut kept = Vec::new();
             for of_square in self.points.chunk_by(|a, b| place(a) == place(b)) {
                 // Evenly by height: what has two surfaces keeps both.
-                let count = of_square.len().min(MOST_IN_SQUARE);
+                let count = of_square.len().min(MOST_POINTS_IN_SQUARE);
                 kept.extend(
                     (0..count).map(|i| of_square[(2 * i + 1) * of_square.len() / (2 * count)]),
                 );
@@ -72,7 +72,7 @@ impl Thinned {
 
 /// What lies farther from the scene, metres, is another place: single precision holds a
 /// millimetre of what is nearer.
-const FARTHEST_M: f64 = 10_000.0;
+const FARTHEST_POINT_M: f64 = 10_000.0;
 
 #[cfg(test)]
 mod tests {
@@ -95,7 +95,7 @@ mod tests {
         points.push(Vector3::new(9.0, 1.0, 1.0));
         let kept = points.finished();
         // They lie in eight squares.
-        assert_eq!(kept.len(), 8 * MOST_IN_SQUARE);
+        assert_eq!(kept.len(), 8 * MOST_POINTS_IN_SQUARE);
         assert!(kept.iter().all(|p| p.iter().all(|v| v.is_finite())));
         assert!(kept.iter().all(|p| p.x <= 2.0));
     }

@@ -12,9 +12,8 @@
 
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
-use super::left_out::few;
 use super::text::{TextLine, data_lines, quoted};
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::orienting::orientation::angles::without_rounding;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 use crate::photographs::camera::Distortion;
@@ -72,7 +71,7 @@ pub(crate) fn read_bundler(
         if !without.is_empty() {
             warnings.push(format!(
                 "{path} states no principal point for {}: it is taken to be in the middle",
-                few(&without)
+                listed(&without)
             ));
         }
     }

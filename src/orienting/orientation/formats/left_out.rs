@@ -3,7 +3,7 @@
 //! A file may hold more cameras than the scene has images: a lens of an unknown model does harm
 //! only where nothing else is left.
 
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::orienting::orientation::image_orientation::Orientation;
 
 /// Images that are left out, with the reason of the first.
@@ -30,20 +30,9 @@ impl LeftOut {
             None => Ok(found),
             Some(reason) if found.is_empty() => Err(reason),
             Some(reason) => {
-                warnings.push(format!("{reason}; left out: {}", few(&self.images)));
+                warnings.push(format!("{reason}; left out: {}", listed(&self.images)));
                 Ok(found)
             }
         }
-    }
-}
-
-/// Names in a row; long lists are cut short.
-pub(crate) fn few<T: AsRef<str>>(names: &[T]) -> String {
-    const MOST: usize = 8;
-    let shown: Vec<&str> = names.iter().take(MOST).map(AsRef::as_ref).collect();
-    let more = names.len().saturating_sub(MOST);
-    match more {
-        0 => shown.join(", "),
-        _ => format!("{} and {more} more", shown.join(", ")),
     }
 }

@@ -163,7 +163,9 @@ fn refuse_affinity(file: &XmlReader, node: Node) -> Result<()> {
 
 /// Compares the points that MicMac itself projected with where this camera sees them.
 fn verify(file: &XmlReader, points: Node, found: &Orientation) -> Result<()> {
-    const ALLOWED_PX: f64 = 1.0;
+    // The points are written by the same model: what is a whole pixel away was another one.
+    // Assumption.
+    const TOLERANCE_PX: f64 = 1.0;
     let (width, height) = found.size.unwrap_or_default();
     let camera = Camera {
         k: found.k,
@@ -181,7 +183,7 @@ fn verify(file: &XmlReader, points: Node, found: &Orientation) -> Result<()> {
         let ideal = camera.project(&Point3::from(file.numbers::<3>(world)?));
         let seen = ideal.map(|ideal| lens.measured(&found.k, &ideal));
         let off_px = seen.map_or(f64::INFINITY, |seen| (seen - stated).norm());
-        if off_px.is_nan() || off_px > ALLOWED_PX {
+        if off_px.is_nan() || off_px > TOLERANCE_PX {
             let mut refusal = file.error(
                 point,
                 &format!(

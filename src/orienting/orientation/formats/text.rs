@@ -90,8 +90,9 @@ pub(crate) fn data_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item
 
 /// A longer text from elsewhere in one line, shortened.
 pub(crate) fn quoted_long(text: &str) -> String {
-    const MOST: usize = 200;
-    let short: String = text.chars().take(MOST).collect();
+    // Assumption: some three lines of a message.
+    const MOST_CHARACTERS: usize = 200;
+    let short: String = text.chars().take(MOST_CHARACTERS).collect();
     let dots = if short.len() < text.len() { "..." } else { "" };
     // A semicolon would end the problem and begin the advice.
     format!("{short}{dots}")

@@ -6,11 +6,10 @@
 
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
-use crate::base::error::Error;
+use crate::base::error::{Error, listed};
 use crate::base::geometry::{bounds, mean_point};
 use crate::base::plan_index::PlanIndex;
 use crate::orienting::orientation::EXACT_ROTATION;
-use crate::orienting::scene_loader::names::listed;
 use crate::photographs::camera::Camera;
 
 /// What the cameras give reason to refuse or to warn of.
@@ -23,8 +22,9 @@ pub(crate) struct CameraChecks {
     pub heights: Option<[f64; 2]>,
 }
 
-/// Coordinates beyond this (metres) are map coordinates, of which an origin is taken off.
-const LARGE_M: f64 = 10_000.0;
+/// Coordinates beyond this, metres, are those of a map, of which an origin is taken off.
+/// Assumption: no scene is as large.
+const MAP_COORDINATE_M: f64 = 10_000.0;
 
 /// Grid of the origin, metres: whole hundreds are easy to add.
 const ORIGIN_GRID_M: f64 = 100.0;
@@ -33,7 +33,7 @@ const ORIGIN_GRID_M: f64 = 100.0;
 /// coordinates are large; else zero. Heights are small everywhere and stay what they are.
 pub(crate) fn scene_origin<'a>(cameras: impl Iterator<Item = &'a Camera>) -> Vector3<f64> {
     let centers: Vec<Point3<f64>> = cameras.map(|c| c.center).collect();
-    let is_large = |c: &Point3<f64>| c.x.abs() > LARGE_M || c.y.abs() > LARGE_M;
+    let is_large = |c: &Point3<f64>| c.x.abs() > MAP_COORDINATE_M || c.y.abs() > MAP_COORDINATE_M;
     if !centers.iter().any(is_large) {
         return Vector3::zeros();
     }
@@ -81,7 +81,7 @@ fn placement_error(name: &str, camera: &Camera, ground_z: Option<f64>) -> Option
         })
     };
     let z = camera.center.z;
-    if z.abs() > LARGE_M {
+    if z.abs() > MAP_COORDINATE_M {
         return refuse(
             format!("its camera is {z:.0} m high"),
             "metres with Z up are needed: map or local coordinates, or geocentric ones throughout",
@@ -111,7 +111,7 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
     let mut most_seen = vec![1; cameras.len()];
     for &z in &heights {
         let counts = views_together(&cameras_only, z);
-        if counts.iter().any(|&n| n >= ENOUGH) {
+        if counts.iter().any(|&n| n >= LEAST_VIEWS) {
             let [low, high] = found.heights.unwrap_or([z, z]);
             found.heights = Some([low.min(z), high.max(z)]);
         }
@@ -119,7 +119,7 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
             *most = n.max(*most);
         }
     }
-    let alone = || (0..cameras.len()).filter(|&i| most_seen[i] < ENOUGH);
+    let alone = || (0..cameras.len()).filter(|&i| most_seen[i] < LEAST_VIEWS);
     if found.heights.is_none() {
         let place = match ground_z {
             Some(z) => format!("at the ground height {z:.1} m"),
@@ -145,14 +145,14 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
 /// A point this far outside an image still counts as seen, pixels: rounding.
 const BORDER_PX: f64 = 0.5;
 
-/// So many views of a place are enough.
-const ENOUGH: usize = 3;
+/// Views that must show a place: a line match in two cannot be verified without a third.
+pub(in crate::orienting::scene_loader) const LEAST_VIEWS: usize = 3;
 
 /// Samples along each side of an image for the overlap.
 const GRID: u32 = 4;
 
-/// For each view, the greatest number of views (itself included; counted up to [`ENOUGH`], which is
-/// all that matters) that see one of its sample points on the ground at height `z`.
+/// For each view, the greatest number of views (itself included; counted up to [`LEAST_VIEWS`],
+/// which is all that matters) that see one of its sample points on the ground at height `z`.
 fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
     let footprints = PlanIndex::new(cameras.iter().map(|camera| footprint(camera, z)));
     cameras
@@ -163,13 +163,13 @@ fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
                 let near = near.map(|i| cameras[i as usize]);
                 let sees =
                     |c: &&Camera| (c.project(world)).is_some_and(|p| c.contains(&p, -BORDER_PX));
-                near.filter(sees).take(ENOUGH).count()
+                near.filter(sees).take(LEAST_VIEWS).count()
             };
             let mut most = 0;
             for world in samples(camera).filter_map(|p| camera.at_height(&p, z)) {
                 most = most.max(seen_by(&world));
                 // No place counts for more; of a flight the first ones do.
-                if most == ENOUGH {
+                if most == LEAST_VIEWS {
                     break;
                 }
             }
@@ -206,7 +206,9 @@ fn samples(camera: &Camera) -> impl Iterator<Item = Point2<f64>> {
 /// Heights at which the ground may lie: where rays of pairs of views pass each other, thinned out,
 /// and a series of depths below the lowest camera for views whose axes are parallel.
 fn candidate_heights(cameras: &[&Camera]) -> Vec<f64> {
-    const MOST: usize = 60;
+    // Heights at each of which the views of all places are counted: tried as many as the time of a
+    // check allows. Assumption.
+    const MOST_CROSSINGS: usize = 60;
     // Neighbours in the list and far ones: every offset that is a power of two keeps large blocks
     // quick.
     let offsets = [1usize, 2, 3, 4, 8, 16, 32, 64];
@@ -216,7 +218,7 @@ fn candidate_heights(cameras: &[&Camera]) -> Vec<f64> {
         .flat_map(|(i, j)| pair_heights(cameras[i], cameras[j]))
         .collect();
     crossings.sort_by(f64::total_cmp);
-    let step = crossings.len().div_ceil(MOST).max(1);
+    let step = crossings.len().div_ceil(MOST_CROSSINGS).max(1);
     let lowest = cameras
         .iter()
         .map(|c| c.center.z)

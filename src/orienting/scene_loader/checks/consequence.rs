@@ -1,9 +1,8 @@
 //! What follows from the finding of the orientation check: a refusal or a warning, in words.
 
 use crate::base::agreement::Agreement;
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::orienting::orientation_check::{CheckFinding, CheckedView, OrientationCheck};
-use crate::orienting::scene_loader::names::listed;
 
 /// A warning, or the refusal of the scene. `refusal` is the one that the positions of the cameras
 /// alone gave reason for; with `ignore_check` what the images contradict is only a warning.
@@ -46,27 +45,31 @@ pub(crate) fn warning_or_refusal(
             return Err(contradiction(problem.clone(), advice));
         }
     }
-    if let Some(refusal) = refusal {
-        return Err(match (finding, refusal) {
-            (CheckFinding::Sound(agreement) | CheckFinding::Offset { agreement, .. }, refusal) => {
-                contradiction(
-                    format!(
-                        "{} (but the images agree with one another to {:.2}, so it is the world that is turned or \
-                         displaced)",
-                        problem_of(&refusal),
-                        agreement.score
-                    ),
-                    "the orientation is needed with Z up, in metres above the ground's height system",
-                )
-            }
-            (_, Error::Scene { problem, advice }) => contradiction(problem, &advice),
-            (_, refusal) => refusal,
-        });
+    match (finding, refusal) {
+        (
+            CheckFinding::Sound(agreement) | CheckFinding::Offset { agreement, .. },
+            Some(refusal),
+        ) => Err(contradiction(
+            format!(
+                "{} (but the images agree with one another to {:.2}, so it is the world that is turned or \
+                 displaced)",
+                problem_of(&refusal),
+                agreement.score
+            ),
+            "the orientation is needed with Z up, in metres above the ground's height system",
+        )),
+        (_, Some(Error::Scene { problem, advice })) => Err(contradiction(problem, &advice)),
+        (_, Some(refusal)) => Err(refusal),
+        (_, None) => Ok(match disagreement {
+            Some((problem, _)) => Some(problem),
+            None => warning(finding, views),
+        }),
     }
-    if let Some((problem, _)) = disagreement {
-        return Ok(Some(problem));
-    }
-    Ok(match finding {
+}
+
+/// What is to be said of a finding that refuses nothing.
+fn warning(finding: &CheckFinding, views: &[CheckedView]) -> Option<String> {
+    match finding {
         CheckFinding::Offset {
             offsets_px: [before, after],
             words,
@@ -84,7 +87,7 @@ pub(crate) fn warning_or_refusal(
             "{}: check that they belong together",
             hardly_agree(agreement)
         )),
-    })
+    }
 }
 
 fn hardly_agree(agreement: &Agreement) -> String {

@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::camera_checks;
+use super::camera_checks::{self, CameraChecks};
 use super::consequence::warning_or_refusal;
 use crate::base::agreement::{Agreement, AgreementReport};
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::orienting::orientation::AngleUnit;
 use crate::orienting::orientation_check::{
     AngleReadings, CheckFinding, CheckedView, OrientationCheck, cameras_in, check_orientation,
@@ -13,7 +13,6 @@ use crate::orienting::orientation_check::{
 };
 use crate::orienting::scene::ViewShift;
 use crate::orienting::scene_loader::input::LoadOptions;
-use crate::orienting::scene_loader::names::listed;
 use crate::photographs::camera::Camera;
 
 /// Cameras as they are to be used, what was found and what was corrected.
@@ -44,9 +43,7 @@ pub(crate) fn check_and_correct(
             for (view, camera) in views.iter_mut().zip(cameras) {
                 view.camera = camera;
             }
-            let ground_z = options.ground_z.map(|z| z - views[0].origin.z);
-            let named: Vec<(&str, &Camera)> = views.iter().map(|v| (v.name, &v.camera)).collect();
-            let found = camera_checks::check_cameras(&named, ground_z);
+            let found = check_places(&views, options);
             refusal = found.errors.into_iter().next();
             warnings.extend(found.warnings);
         }
@@ -65,30 +62,13 @@ pub(crate) fn check_and_correct(
             view.camera = camera;
             view.origin += origin_change;
         }
-        let ground_z = options.ground_z.map(|z| z - views[0].origin.z);
-        let named: Vec<(&str, &Camera)> = views.iter().map(|v| (v.name, &v.camera)).collect();
-        if let Some(error) = camera_checks::check_cameras(&named, ground_z)
-            .errors
-            .into_iter()
-            .next()
-        {
-            return Err(error);
-        }
+        let errors = check_places(&views, options).errors;
+        errors.into_iter().next().map_or(Ok(()), Err)?;
         check = check_orientation(&views);
-        warnings.extend(warning_or_refusal(
-            &check,
-            &views,
-            None,
-            options.ignore_check,
-        )?);
-    } else {
-        warnings.extend(warning_or_refusal(
-            &check,
-            &views,
-            refusal,
-            options.ignore_check,
-        )?);
+        refusal = None;
     }
+    let warning = warning_or_refusal(&check, &views, refusal, options.ignore_check);
+    warnings.extend(warning?);
     warnings.extend(words_of_shifts(&check, &views));
     Ok(CheckedCameras {
         cameras: views.iter().map(|v| v.camera.clone()).collect(),
@@ -98,6 +78,13 @@ pub(crate) fn check_and_correct(
         warnings,
         reread,
     })
+}
+
+/// Checks where the cameras of views stand.
+fn check_places(views: &[CheckedView], options: &LoadOptions) -> CameraChecks {
+    let ground_z = options.ground_z.map(|z| z - views[0].origin.z);
+    let named: Vec<(&str, &Camera)> = views.iter().map(|v| (v.name, &v.camera)).collect();
+    camera_checks::check_cameras(&named, ground_z)
 }
 
 /// Which unit was taken, and why.

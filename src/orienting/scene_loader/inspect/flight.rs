@@ -202,6 +202,7 @@ impl<'a> Flight<'a> {
 /// Assumption: the overlap for which flights are usually planned; cameras that look down in
 /// parallel say nothing else of it.
 fn assumed_ground(cameras: &[&Camera]) -> f64 {
+    // What the next photograph shows of other ground.
     const NEW_SHARE: f64 = 0.25;
     let middle = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);
@@ -241,14 +242,15 @@ fn outline(camera: &Camera, z: f64, coarsest: f64) -> Vec<Point2<f64>> {
 /// The box of what is to be seen of a flight: what three show and where they were taken, with a
 /// margin; local frame.
 fn frame_of(cameras: &[&Camera], shown: Option<[f64; 4]>) -> [f64; 4] {
-    const MARGIN: f64 = 0.06;
+    // A share of the longer side. Assumption: what lies at the border is then seen whole.
+    const MARGIN_SHARE: f64 = 0.06;
     let corners = shown
         .into_iter()
         .flat_map(|[x0, y0, x1, y1]| [(x0, y0), (x1, y1)].map(|(x, y)| Point2::new(x, y)));
     let centers = cameras.iter().map(|camera| camera.center.xy());
     let all: Vec<Point2<f64>> = corners.chain(centers).collect();
     let [x0, y0, x1, y1] = enclosing(&all).unwrap_or_default();
-    let margin = (MARGIN * (x1 - x0).max(y1 - y0)).max(1.0);
+    let margin = (MARGIN_SHARE * (x1 - x0).max(y1 - y0)).max(1.0);
     [x0 - margin, y0 - margin, x1 + margin, y1 + margin]
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
+use super::super::checks::camera_checks::LEAST_VIEWS;
 use super::super::decode::needed;
 use super::super::ground::{ground_heights, pixel_in_the_middle, plan_scene, unreduced_plan};
 use super::super::input::LoadOptions;
@@ -13,15 +14,12 @@ use crate::base::math::{larger, smaller};
 use crate::orienting::orientation::InputFile;
 use crate::photographs::camera::Camera;
 
-/// Views that must show a place: a line match in two cannot be verified without a third.
-const LEAST_VIEWS: usize = 3;
-
 /// Places along the longer side of the area at which the views are counted.
 const PLACES: u32 = 200;
 
 /// Pixels so many times as large on the ground as those in the middle of the photographs are not
 /// counted: towards the horizon an image shows any distance, and little of it.
-const COARSEST: f64 = 2.0;
+const COARSEST_RATIO: f64 = 2.0;
 
 /// A view of a region and its part that a run reads.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -123,7 +121,7 @@ impl ShownArea {
 
 /// The largest pixels that count, metres, on ground at this height.
 pub(super) fn coarsest_pixel(cameras: &[&Camera], z: f64) -> Option<f64> {
-    pixel_in_the_middle(cameras.iter().copied(), z).map(|pixel_m| COARSEST * pixel_m)
+    pixel_in_the_middle(cameras.iter().copied(), z).map(|pixel_m| COARSEST_RATIO * pixel_m)
 }
 
 /// Does a camera show a place in pixels finer than `coarsest` metres?

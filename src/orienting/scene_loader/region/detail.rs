@@ -48,15 +48,15 @@ fn bits_per_pixel(file: &InputFile, [width, height]: [u32; 2]) -> Option<f64> {
     (is_jpeg && pixels > 0.0).then(|| 8.0 * file.length() as f64 / pixels)
 }
 
-/// Fewest photographs of a camera that say what is usual.
-const FEWEST: usize = 3;
+/// Fewest photographs of a camera that say what is usual: one of two may be the odd one.
+const FEWEST_PHOTOGRAPHS: usize = 3;
 
 /// The median of the bits of a pixel of one camera's photographs.
 fn usual(bits: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let mut known: Vec<f64> = bits.flatten().collect();
     known.sort_by(f64::total_cmp);
     let median = known.get(known.len() / 2).copied();
-    median.filter(|bits| known.len() >= FEWEST && *bits > 0.0)
+    median.filter(|bits| known.len() >= FEWEST_PHOTOGRAPHS && *bits > 0.0)
 }
 
 /// The share by bits of a pixel: what is usual has all of the information, and so has what has

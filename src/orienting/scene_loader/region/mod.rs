@@ -10,9 +10,8 @@ mod view_choice;
 use nalgebra::{Point2, Point3, Vector3};
 
 use super::checks::camera_checks;
-use super::names::listed;
-use super::planned_view::{PlannedView, offset_calibration};
-use crate::base::error::{Error, Result};
+use super::planned_view::{PlannedView, SMALLEST_SIDE_PX, offset_calibration};
+use crate::base::error::{Error, Result, listed};
 use crate::orienting::orientation::InputFile;
 use crate::orienting::scene::Scene;
 use crate::photographs::camera::{Camera, Distortion};
@@ -20,7 +19,7 @@ use crate::photographs::raster::{Gray, Photograph};
 
 /// Buildings rise above the ground by no more than this, metres. Assumption: roofs of houses and
 /// halls.
-const TALLEST_M: f64 = 60.0;
+const TALLEST_BUILDING_M: f64 = 60.0;
 
 /// Margin around the box, pixels, so that filters and windows at its border are complete.
 const MARGIN_PX: f64 = 40.0;
@@ -32,9 +31,6 @@ pub const MOST_VIEWS: usize = 12;
 
 /// Points along a side of the region at which views are compared.
 const COMPARED_AT: u32 = 5;
-
-/// Smallest part that is kept, pixels along a side.
-const SMALLEST_PX: u32 = 64;
 
 /// What is said of the views that are not used.
 pub(crate) struct CutNotice {
@@ -119,7 +115,7 @@ impl RegionOfInterest {
             cameras,
             shares,
             &places,
-            TALLEST_M,
+            TALLEST_BUILDING_M,
             most.unwrap_or(MOST_VIEWS),
         )
     }
@@ -139,7 +135,7 @@ impl RegionOfInterest {
         let span = |low: f64, high: f64, size: u32| {
             let from = (low - MARGIN_PX).floor().clamp(0.0, f64::from(size)) as u32;
             let to = (high + MARGIN_PX).ceil().clamp(0.0, f64::from(size)) as u32;
-            (to >= from + SMALLEST_PX.min(size)).then(|| (from, to - from))
+            (to >= from + SMALLEST_SIDE_PX.min(size)).then(|| (from, to - from))
         };
         let (column, width) = span(low[0], high[0], camera.width)?;
         let (row, height) = span(low[1], high[1], camera.height)?;
@@ -149,9 +145,12 @@ impl RegionOfInterest {
     /// Does some ground point of the region lie in the image? The box of the projected corners
     /// alone also contains parts of tilted views that see nothing of it.
     fn is_seen_by(&self, camera: &Camera) -> bool {
-        const STEPS: u32 = 8;
-        let t = |i: u32| f64::from(i) / f64::from(STEPS);
-        let grid = || (0..=STEPS).flat_map(move |i| (0..=STEPS).map(move |j| (t(i), t(j))));
+        // Points of the grid a side, but one. Assumption: a view that shows less than an eighth of
+        // a region either way is of no use to it.
+        const GRID_STEPS: u32 = 8;
+        let t = |i: u32| f64::from(i) / f64::from(GRID_STEPS);
+        let grid =
+            || (0..=GRID_STEPS).flat_map(move |i| (0..=GRID_STEPS).map(move |j| (t(i), t(j))));
         let heights = [self.low.z, 0.5 * (self.low.z + self.high.z), self.high.z];
         let shown = heights.iter().any(|&z| {
             grid().any(|(u, v)| {
@@ -179,11 +178,13 @@ impl RegionOfInterest {
     /// Points of the image whose box holds the region and its buildings: the corners, and where
     /// edges pass behind the camera.
     fn outline(&self, camera: &Camera) -> Vec<Point2<f64>> {
-        const NEAR_M: f64 = 1.0;
+        // Depth of the plane at which edges are cut off, metres: in front of the camera, and nearer
+        // than whatever is photographed from the air.
+        const NEAR_PLANE_M: f64 = 1.0;
         let corner = |i: usize| {
             let pick =
                 |axis: usize, low: f64, high: f64| if i >> axis & 1 == 0 { low } else { high };
-            let top = self.high.z + TALLEST_M;
+            let top = self.high.z + TALLEST_BUILDING_M;
             Point3::new(
                 pick(0, self.low.x, self.high.x),
                 pick(1, self.low.y, self.high.y),
@@ -196,7 +197,10 @@ impl RegionOfInterest {
             .filter(|(i, axis)| i >> axis & 1 == 0)
         {
             let (a, b) = (corner(i), corner(i | 1 << axis));
-            let (da, db) = (camera.depth(&a) - NEAR_M, camera.depth(&b) - NEAR_M);
+            let (da, db) = (
+                camera.depth(&a) - NEAR_PLANE_M,
+                camera.depth(&b) - NEAR_PLANE_M,
+            );
             points.extend(
                 [(a, da), (b, db)]
                     .iter()
@@ -302,13 +306,15 @@ pub(crate) fn cut_scene(scene: &mut Scene, roi: [f64; 4], most: Option<usize>) -
 /// The part of the photograph that a part of the pinhole is made of, and the part itself: column,
 /// row, width, height.
 pub(crate) fn source_of(part: [u32; 4], whole: &Camera, lens: &Distortion) -> [u32; 4] {
-    const STEPS: u32 = 16;
+    // Assumption: between so many samples a lens bends the border of a part by less than
+    // [`SLACK_PX`].
+    const GRID_STEPS: u32 = 16;
     let [column, row, width, height] = part.map(f64::from);
     let k = &whole.k;
     let mut low = [column, row];
     let mut high = [column + width, row + height];
-    for (i, j) in (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (i, j))) {
-        let t = |n: u32| f64::from(n) / f64::from(STEPS);
+    for (i, j) in (0..=GRID_STEPS).flat_map(|i| (0..=GRID_STEPS).map(move |j| (i, j))) {
+        let t = |n: u32| f64::from(n) / f64::from(GRID_STEPS);
         let (x, y) = (column + t(i) * width, row + t(j) * height);
         let p = lens.measured(k, &Point2::new(x, y));
         low = [0, 1].map(|a| low[a].min(p[a]));

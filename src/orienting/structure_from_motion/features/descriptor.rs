@@ -20,7 +20,7 @@ pub(crate) const LENGTH: usize = SIDE * SIDE * DIRECTIONS;
 const CELL: f64 = 3.0;
 
 /// Largest share of one number in a descriptor of length one (section 6.1).
-const LARGEST: f32 = 0.2;
+const LARGEST_SHARE: f32 = 0.2;
 
 /// What a descriptor of length one has in bytes.
 pub(crate) const BYTES_AT_ONE: f32 = 512.0;
@@ -99,7 +99,11 @@ fn in_bytes(histogram: &mut [f32; LENGTH]) -> Descriptor {
         .max(1e-12);
     for value in histogram.iter_mut() {
         let share = *value / norm;
-        *value = if share > LARGEST { LARGEST } else { share };
+        *value = if share > LARGEST_SHARE {
+            LARGEST_SHARE
+        } else {
+            share
+        };
     }
     let sum = histogram.iter().sum::<f32>().max(1e-12);
     histogram.map(|value| ((value / sum).sqrt() * BYTES_AT_ONE + 0.5).min(255.0) as u8)

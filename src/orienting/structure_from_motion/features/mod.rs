@@ -21,12 +21,13 @@ mod resample;
 mod scale_space;
 mod spread;
 
-pub(super) use descriptor::Descriptor;
+pub(super) use descriptor::{Descriptor, LENGTH};
 
 use serde::{Deserialize, Serialize};
 
 use crate::photographs::raster::Gray;
 
+pub(crate) use self::scale_space::FIRST_SIGMA;
 use self::scale_space::ScaleSpace;
 
 /// A keypoint.

@@ -4,6 +4,7 @@ use super::extrema::Extremum;
 use super::gradient::{Decay, gradient};
 use super::scale_space::{Octave, SCALES, sigma_at};
 
+/// Bins of the histogram of directions, of ten degrees (Lowe 2004, section 5).
 const BINS: usize = 36;
 
 /// Weights fall with this many times the blur of the keypoint.
@@ -12,8 +13,8 @@ const WINDOW: f64 = 1.5;
 /// Peaks of at least this share of the highest one give a keypoint of their own.
 const PEAK_SHARE: f32 = 0.8;
 
-/// Most directions of one place.
-const MOST: usize = 2;
+/// Most directions of one place. Assumption: a third one is rarely matched.
+const MOST_DIRECTIONS: usize = 2;
 
 thread_local! {
     static DECAY: Decay = Decay::new();
@@ -86,6 +87,6 @@ fn peaks(histogram: &[f32; BINS]) -> Vec<f32> {
         }
     }
     peaks.sort_by(|a, b| b.0.total_cmp(&a.0));
-    peaks.truncate(MOST);
+    peaks.truncate(MOST_DIRECTIONS);
     peaks.into_iter().map(|(_, angle)| angle).collect()
 }

@@ -10,7 +10,7 @@ use super::resample::doubled;
 pub(super) const SCALES: usize = 3;
 
 /// Blur of the first image of each octave, pixels of the octave (section 3.3).
-pub(super) const FIRST_SIGMA: f64 = 1.6;
+pub(crate) const FIRST_SIGMA: f64 = 1.6;
 
 /// Blur that a photograph has anyway, pixels.
 const CAMERA_SIGMA: f64 = 0.5;

@@ -11,7 +11,9 @@ use crate::orienting::structure_from_motion::frame::{FrameBasis, spread};
 use crate::orienting::structure_from_motion::random::Random;
 use crate::orienting::structure_from_motion::resection::linearised;
 use crate::orienting::structure_from_motion::similarity::Similarity;
-use crate::orienting::structure_from_motion::triangulation::{MOST_SIGMAS, triangulate};
+use crate::orienting::structure_from_motion::triangulation::{
+    LARGEST_RESIDUAL_SIGMAS, triangulate,
+};
 
 /// Standard deviation of a point that a person marks in a photograph, pixels. Assumption: the list
 /// does not state any.
@@ -24,7 +26,7 @@ const COORDINATE_SIGMA_M: f64 = 0.03;
 const FEWEST_POINTS: usize = 3;
 
 /// Points whose spread across their main axis is a smaller share of that along it are on a line.
-const NARROWEST: f64 = 0.02;
+const COLLINEAR_SHARE: f64 = 0.02;
 
 /// Triples of points that are tried, at most.
 const SAMPLES: usize = 300;
@@ -91,7 +93,7 @@ pub(in super::super) fn to_control(
         let point = &mut points[*place];
         point.residual_m = Some(d.into());
         point.sigma_m = Some(unit * sigmas[i]);
-        point.agrees = lengths(i) <= MOST_SIGMAS * unit;
+        point.agrees = lengths(i) <= LARGEST_RESIDUAL_SIGMAS * unit;
         if point.agrees {
             squares[0] += d.x * d.x + d.y * d.y;
             squares[1] += d.z * d.z;
@@ -110,7 +112,7 @@ pub(in super::super) fn to_control(
 
 fn is_narrow(points: &[Point3<f64>]) -> bool {
     let [along, across, _] = spread(points).lengths;
-    across <= NARROWEST * along
+    across <= COLLINEAR_SHARE * along
 }
 
 /// A control point by its marks, and what is known of it before there is a frame.

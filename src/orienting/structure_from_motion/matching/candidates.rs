@@ -9,13 +9,13 @@ use crate::base::execution::{Sharded, map, sharded_map};
 use crate::orienting::structure_from_motion::features::{Descriptor, Features};
 
 /// Keypoints of a photograph in the quick match.
-const QUICK: usize = 400;
+const QUICK_KEYPOINTS: usize = 400;
 
 /// Fewest quick matches for a pair.
-const FEWEST_QUICK: usize = 4;
+const FEWEST_QUICK_MATCHES: usize = 4;
 
 /// Photographs nearest by position that a photograph is compared with at all.
-const NEAREST: usize = 40;
+const NEAREST_PHOTOGRAPHS: usize = 40;
 
 /// Photographs nearest by position that a photograph is matched with in any case.
 const IN_ANY_CASE: usize = 4;
@@ -46,7 +46,7 @@ pub(in super::super) fn candidate_pairs(
             within(a, j) || within(b, i)
         }
         // Without a position anything may be near.
-        _ => among == NEAREST,
+        _ => among == NEAREST_PHOTOGRAPHS,
     };
     let quick: Vec<Vec<Descriptor>> = map(features, |_, f| of_largest_scales(f));
     let asked: Vec<Candidate> = (0..n)
@@ -56,14 +56,14 @@ pub(in super::super) fn candidate_pairs(
                 second: j,
             })
         })
-        .filter(|c| is_near(c.first, c.second, NEAREST))
+        .filter(|c| is_near(c.first, c.second, NEAREST_PHOTOGRAPHS))
         .collect();
     let counts: Vec<usize> = sharded_map("overlaps", &asked, part, |_, c| {
         matches_of(&quick[c.first], &quick[c.second]).len()
     })?;
     let mut partners: Vec<Vec<(usize, usize)>> = vec![Vec::new(); n];
     for (c, &count) in asked.iter().zip(&counts) {
-        if count >= FEWEST_QUICK {
+        if count >= FEWEST_QUICK_MATCHES {
             partners[c.first].push((count, c.second));
             partners[c.second].push((count, c.first));
         }
@@ -89,7 +89,7 @@ fn near_ones(positions: &[Option<Point3<f64>>]) -> Vec<Option<Vec<usize>>> {
             .filter_map(|(j, p)| p.map(|p| ((p - at).norm(), j)))
             .collect();
         others.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        others.truncate(NEAREST);
+        others.truncate(NEAREST_PHOTOGRAPHS);
         others.into_iter().map(|(_, j)| j).collect()
     };
     (positions.iter().enumerate())
@@ -104,6 +104,6 @@ fn of_largest_scales(features: &Features) -> Vec<Descriptor> {
         let scale = |i: usize| features.keypoints[i].scale;
         scale(b).total_cmp(&scale(a)).then(a.cmp(&b))
     });
-    order.truncate(QUICK);
+    order.truncate(QUICK_KEYPOINTS);
     order.iter().map(|&i| features.descriptors[i]).collect()
 }

@@ -6,13 +6,13 @@
 
 use wide::{i16x16, i32x8};
 
-use crate::orienting::structure_from_motion::features::Descriptor;
+use crate::orienting::structure_from_motion::features::{Descriptor, LENGTH};
 
 /// Descriptors in one vector.
 const LANES: usize = 8;
 
 /// Pairs of numbers of a descriptor.
-const PAIRS: usize = 64;
+const PAIRS: usize = LENGTH / 2;
 
 /// Descriptors of the first set that share what was loaded of the second.
 const ROWS: usize = 4;

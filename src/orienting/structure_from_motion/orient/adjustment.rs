@@ -8,14 +8,11 @@ use crate::orienting::structure_from_motion::block::{Block, BlockPhoto};
 use crate::orienting::structure_from_motion::bundle::{
     BundleOptions, Covariance, adjust, covariance,
 };
-use crate::orienting::structure_from_motion::features::Keypoint;
+use crate::orienting::structure_from_motion::features::{FIRST_SIGMA, Keypoint};
 use crate::orienting::structure_from_motion::incremental::VerifiedPair;
 use crate::orienting::structure_from_motion::intrinsics::{Intrinsics, STATED_FOCAL_PRIOR};
 use crate::orienting::structure_from_motion::tracks::{PairMatches, join};
 use crate::orienting::structure_from_motion::verification::MatchedPhoto;
-
-/// Scale of a fine keypoint, pixels of the working size.
-const FINE_SCALE: f64 = 1.6;
 
 /// Prior standard deviations of k1 and k2: weak blocks keep an ordinary lens, strong ones measure
 /// any.
@@ -28,7 +25,7 @@ const GUESSED_FOCAL_PRIOR: f64 = 0.5;
 const LEAST_CENTER_SIGMA: f64 = 0.001;
 
 /// Photographs whose rows run one way leave it open: longest mean of the directions of their rows.
-const MOST_PARALLEL: f64 = 0.7;
+const LONGEST_MEAN_ROW: f64 = 0.7;
 
 /// Its prior standard deviation, a share of the longer side.
 const CENTER_PRIOR: f64 = 0.02;
@@ -44,7 +41,7 @@ pub(super) fn prior(is_guessed: &[bool], center_px: f64) -> [f64; 5] {
 
 /// Standard deviation of a keypoint as a multiple of that of a fine one: it grows with the scale.
 fn factor(keypoint: &Keypoint, pixel: f64) -> f64 {
-    (f64::from(keypoint.scale) / pixel / FINE_SCALE).max(1.0)
+    (f64::from(keypoint.scale) / pixel / FIRST_SIGMA).max(1.0)
 }
 
 pub(super) fn block(
@@ -113,7 +110,7 @@ pub(super) fn calibrate_center(
         .map(|pose| pose.rotation.inverse() * Vector3::x())
         .collect();
     let mean = rows.iter().fold(Vector3::zeros(), |a, b| a + b) / rows.len() as f64;
-    if is_held || mean.norm() > MOST_PARALLEL {
+    if is_held || mean.norm() > LONGEST_MEAN_ROW {
         return Some(options(0.0));
     }
     if covariance(block, means, &free)

@@ -19,6 +19,17 @@ pub(super) struct Cameras {
 }
 
 impl Cameras {
+    /// What the headers state, and guesses where they state nothing.
+    pub(super) fn or_guessed(&self, guesses: &[Intrinsics]) -> Vec<Intrinsics> {
+        let both = guesses.iter().zip(&self.intrinsics);
+        (both.zip(&self.is_guessed))
+            .map(|((guess, stated), &is_guessed)| match is_guessed {
+                true => guess.clone(),
+                false => stated.clone(),
+            })
+            .collect()
+    }
+
     /// Photographs of one model, size and focal length share a camera.
     pub(super) fn of(photos: &[Photo], options: &OrientOptions) -> Self {
         let mut cameras = Self::default();

@@ -22,7 +22,7 @@ use crate::orienting::orientation::Anchor;
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::bundle::covariance;
 use crate::orienting::structure_from_motion::features::Features;
-use crate::orienting::structure_from_motion::frame::{StatedPose, to_frame};
+use crate::orienting::structure_from_motion::frame::{FrameBasis, StatedPose, to_frame};
 use crate::orienting::structure_from_motion::ground_control::{GroundControl, to_control};
 use crate::orienting::structure_from_motion::incremental::VerifiedPair;
 use crate::orienting::structure_from_motion::intrinsics::Intrinsics;
@@ -259,13 +259,12 @@ impl OrientChain {
     /// # Errors
     /// Where fewer than three photographs join; the message says why.
     pub fn orient(&self, mut on_block: Option<OnBlock>) -> Result<Oriented> {
-        let Some(connected) = &self.connected else {
+        let unknown = || {
             let photographs = self.photos.len() + self.left_out.len();
-            return Err(refusal(
-                format!("the pairs of the {photographs} photographs are not known yet"),
-                "find them first",
-            ));
+            let problem = format!("the pairs of the {photographs} photographs are not known yet");
+            refusal(problem, "find them first")
         };
+        let connected = self.connected.as_ref().ok_or_else(unknown)?;
         let Connected {
             cameras,
             stated,
@@ -298,22 +297,10 @@ impl OrientChain {
         let is_held = self.options.holds_center;
         let adjusted = calibrate_center(&mut block, means, is_guessed, is_held);
         let paths: Vec<&str> = self.photos.iter().map(|p| p.path.as_str()).collect();
-        let (basis, no_control) = match &self.control {
-            Some(control) => match to_control(&mut block, &paths, control) {
-                Ok(basis) => (basis, None),
-                Err(why) => (to_frame(&mut block, stated, *anchor), Some(why)),
-            },
-            None => (to_frame(&mut block, stated, *anchor), None),
-        };
+        let (basis, no_control) = self.to_its_frame(&mut block, &paths, connected);
         // The covariance belongs to the frame.
         let covariance = adjusted.and_then(|options| covariance(&block, means, &options));
-        // What the headers state, and guesses where they state nothing.
-        let before: Vec<Intrinsics> = (cameras.is_guessed.iter().enumerate())
-            .map(|(i, &is_guessed)| match is_guessed {
-                true => means[i].clone(),
-                false => cameras.intrinsics[i].clone(),
-            })
-            .collect();
+        let before = cameras.or_guessed(means);
         if place > 0 && !cameras.is_guessed.contains(&true) {
             undetermined_focal(&block.cameras, &before, covariance.as_ref())?;
         }
@@ -329,5 +316,20 @@ impl OrientChain {
         let mut report = report(&block, &names, &basis, covariance.as_ref(), left_out);
         report.warnings.extend(no_control);
         Ok(Oriented { model, report })
+    }
+
+    /// Brings a block into the frame of the ground control, or else of what the headers state; with
+    /// why that of the control is none.
+    fn to_its_frame(
+        &self,
+        block: &mut Block,
+        paths: &[&str],
+        Connected { stated, anchor, .. }: &Connected,
+    ) -> (FrameBasis, Option<String>) {
+        let control = self.control.as_ref();
+        match control.map(|c| to_control(block, paths, c)).transpose() {
+            Ok(Some(basis)) => (basis, None),
+            other => (to_frame(block, stated, *anchor), other.err()),
+        }
     }
 }

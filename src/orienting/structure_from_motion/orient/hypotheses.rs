@@ -22,7 +22,7 @@ pub(super) struct Hypothesis {
 }
 
 /// Photographs of a block that cannot be left to calibrate its camera from any guess.
-const SMALL: usize = 5;
+const SMALL_BLOCK_PHOTOS: usize = 5;
 
 /// Guesses that a small block is registered from.
 const GUESSES: usize = 3;
@@ -30,7 +30,7 @@ const GUESSES: usize = 3;
 /// How many guesses of the focal length a block of so many photographs is registered from: one that
 /// is stated has a rival only where the pairs prefer that.
 pub(super) fn guesses(photos: usize, is_guessed: &[bool]) -> usize {
-    match (is_guessed.contains(&true), photos <= SMALL) {
+    match (is_guessed.contains(&true), photos <= SMALL_BLOCK_PHOTOS) {
         (false, _) => 2,
         (true, true) => GUESSES,
         (true, false) => 1,

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
 use super::report::{CameraReport, LeftOut, OrientReport, PhotoReport};
 use super::sparse_model::{OrientedPhoto, SparseModel, SparsePoint};
+use crate::orienting::orientation::Anchor;
 use crate::orienting::structure_from_motion::block::{Block, Track};
 use crate::orienting::structure_from_motion::bundle::Covariance;
 use crate::orienting::structure_from_motion::frame::{FrameBasis, StatedPose};
@@ -103,28 +104,10 @@ pub(in super::super) fn report(
     covariance: Option<&Covariance>,
     left_out: Vec<LeftOut>,
 ) -> OrientReport {
-    let n = block.photos.len();
-    let (mut rays, mut squares) = (vec![0usize; n], vec![0.0f64; n]);
-    let mut shared = vec![0usize; n * n];
-    let mut points = 0;
-    for (track, position) in tracks(block) {
-        points += 1;
-        for (photo, r) in residuals(block, track, &position) {
-            rays[photo] += 1;
-            squares[photo] += r * r;
-            for other in track.used() {
-                shared[photo * n + other.photo] += 1;
-            }
-        }
-    }
+    let counts = RayCounts::of(block);
+    let RayCounts { rays, squares, .. } = &counts;
     let registered = block.registered();
     let total: usize = rays.iter().sum();
-    let partners = |photo: usize| {
-        let others = registered.iter().filter(|&&other| other != photo);
-        others
-            .filter(|&&other| shared[photo * n + other] >= FEWEST_SHARED)
-            .count()
-    };
     let photos: Vec<PhotoReport> = (registered.iter().enumerate())
         .map(|(slot, &photo)| PhotoReport {
             file: names.paths[photo].to_owned(),
@@ -132,20 +115,11 @@ pub(in super::super) fn report(
             rms_px: (squares[photo] / rays[photo].max(1) as f64).sqrt(),
             sigma_m: covariance.map(|c| deviations(&c.centers[slot])),
             sigma_deg: covariance.map(|c| largest_deviation(&c.turns[slot]).to_degrees()),
-            partners: partners(photo),
+            partners: counts.partners(photo, &registered),
             from_stated_m: from_stated(block, names, basis, photo),
         })
         .collect();
-    let mut overlap = Vec::new();
-    for (i, &a) in registered.iter().enumerate() {
-        for (j, &b) in registered.iter().enumerate().skip(i + 1) {
-            let count = shared[a * n + b];
-            if count >= FEWEST_SHARED {
-                overlap.push((i, j, count));
-            }
-        }
-    }
-    let rays_a_point = total as f64 / points.max(1) as f64;
+    let rays_a_point = total as f64 / counts.points.max(1) as f64;
     let (frame, anchor, mut warnings) = frame_words(basis);
     if rays_a_point < FEW_RAYS {
         warnings.push(format!(
@@ -171,15 +145,75 @@ pub(in super::super) fn report(
         offset,
         is_metric: anchor.is_some() || !control.is_empty(),
         control,
-        points,
+        points: counts.points,
         rays: total,
         rays_a_point,
         rms_px: (squares.iter().sum::<f64>() / total.max(1) as f64).sqrt(),
         cameras,
         photos,
         left_out,
-        overlap,
+        overlap: counts.overlap(&registered),
         warnings,
+    }
+}
+
+/// What the rays of a block count up to.
+struct RayCounts {
+    points: usize,
+    /// Rays by photograph, and the sum of their squared residuals.
+    rays: Vec<usize>,
+    squares: Vec<f64>,
+    /// Points that two photographs see, row by row.
+    shared: Vec<usize>,
+}
+
+impl RayCounts {
+    fn of(block: &Block) -> Self {
+        let n = block.photos.len();
+        let mut counts = Self {
+            points: 0,
+            rays: vec![0; n],
+            squares: vec![0.0; n],
+            shared: vec![0; n * n],
+        };
+        for (track, position) in tracks(block) {
+            counts.points += 1;
+            for (photo, r) in residuals(block, track, &position) {
+                counts.rays[photo] += 1;
+                counts.squares[photo] += r * r;
+                for other in track.used() {
+                    counts.shared[photo * n + other.photo] += 1;
+                }
+            }
+        }
+        counts
+    }
+
+    fn shared(&self, photo: usize, other: usize) -> usize {
+        self.shared[photo * self.rays.len() + other]
+    }
+
+    /// How many other photographs overlap with one.
+    fn partners(&self, photo: usize, registered: &[usize]) -> usize {
+        let others = registered.iter().filter(|&&other| other != photo);
+        others
+            .filter(|&&other| self.shared(photo, other) >= FEWEST_SHARED)
+            .count()
+    }
+
+    /// The pairs that overlap, by their places among the registered photographs, and how many
+    /// points they share.
+    fn overlap(&self, registered: &[usize]) -> Vec<(usize, usize, usize)> {
+        let mut overlap = Vec::new();
+        for (i, &a) in registered.iter().enumerate() {
+            for (j, &b) in registered.iter().enumerate().skip(i + 1) {
+                let count = self.shared(a, b);
+                if count >= FEWEST_SHARED {
+                    overlap.push((i, j, count));
+                }
+            }
+        }
+        overlap
     }
 }
 
@@ -237,13 +271,15 @@ fn largest_deviation(covariance: &Matrix3<f64>) -> f64 {
         .sqrt()
 }
 
-fn frame_words(
-    basis: &FrameBasis,
-) -> (
-    String,
-    Option<crate::orienting::orientation::Anchor>,
-    Vec<String>,
-) {
+fn metres_from(anchor: &Anchor) -> String {
+    format!(
+        "metres, x east, y north, z up from longitude {:.3}, latitude {:.3}",
+        anchor.lon_deg, anchor.lat_deg
+    )
+}
+
+/// A frame in words, the place that it counts from, and what is to be said against it.
+fn frame_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) {
     match basis {
         FrameBasis::Control {
             system,
@@ -255,10 +291,7 @@ fn frame_words(
         } => {
             let agreeing = points.iter().filter(|p| p.agrees).count();
             let frame = match anchor {
-                Some(anchor) => format!(
-                    "metres, x east, y north, z up from longitude {:.3}, latitude {:.3}",
-                    anchor.lon_deg, anchor.lat_deg
-                ),
+                Some(anchor) => metres_from(anchor),
                 None => format!("{system}, x from {east} and y from {north} m"),
             };
             let words = format!(
@@ -275,21 +308,15 @@ fn frame_words(
             rms_m: [plan, height],
             is_levelled,
         } => {
-            let mut warnings = Vec::new();
-            if *is_levelled {
-                warnings.push(
-                    "the stated positions lie on one line: the slope across it follows from the \
-                     angles or the ground"
-                        .to_owned(),
-                );
-            }
+            let levelled = "the stated positions lie on one line: the slope across it follows from \
+                            the angles or the ground";
+            let warnings = is_levelled.then(|| levelled.to_owned());
             let words = format!(
-                "metres, x east, y north, z up from longitude {:.3}, latitude {:.3}: the stated \
-                 positions of {agreeing} of {stated} photographs, rms {plan:.2} m in plan, \
-                 {height:.2} m in height (an offset common to all heights cannot be seen)",
-                anchor.lon_deg, anchor.lat_deg
+                "{}: the stated positions of {agreeing} of {stated} photographs, rms {plan:.2} m in \
+                 plan, {height:.2} m in height (an offset common to all heights cannot be seen)",
+                metres_from(anchor)
             );
-            (words, Some(*anchor), warnings)
+            (words, Some(*anchor), warnings.into_iter().collect())
         }
         FrameBasis::Angles { rms_deg } => (
             format!(

@@ -9,9 +9,9 @@ use super::sparse_model::SparseModel;
 const CURVE_POINTS: usize = 49;
 
 /// Depths of an epipolar curve, as shares of the least and the largest depth of the points that the
-/// photograph sees.
-const NEARER: f64 = 0.3;
-const FARTHER: f64 = 6.0;
+/// photograph sees. Assumption: what is marked may be nearer or farther than whatever was matched.
+const NEAREST_DEPTH_SHARE: f64 = 0.3;
+const FARTHEST_DEPTH_SHARE: f64 = 6.0;
 
 impl SparseModel {
     /// Enlarges the model about a point of its frame.
@@ -50,7 +50,10 @@ impl SparseModel {
         let direction = from.pose.rotation.inverse() * ray;
         let camera = &self.cameras[to.camera];
         // Even steps of the inverse depth are about even steps along the image.
-        let [most, least] = [1.0 / (NEARER * near), 1.0 / (FARTHER * far)];
+        let [most, least] = [
+            1.0 / (NEAREST_DEPTH_SHARE * near),
+            1.0 / (FARTHEST_DEPTH_SHARE * far),
+        ];
         (0..CURVE_POINTS)
             .map(|i| most + (least - most) * i as f64 / (CURVE_POINTS - 1) as f64)
             .map(|inverse| from.pose.center + direction / inverse)

@@ -41,6 +41,41 @@ const VIDEO: UnreadImageFormat = UnreadImageFormat {
     is_image: false,
 };
 
+/// Formats whose files begin with certain bytes.
+const STARTS: [(&[u8], UnreadImageFormat); 18] = [
+    (
+        b"FUJIFILMCCD-RAW",
+        image("a camera's raw file (Fujifilm)", DEVELOP),
+    ),
+    (b"IIRO", image("a camera's raw file (Olympus)", DEVELOP)),
+    (b"IIRS", image("a camera's raw file (Olympus)", DEVELOP)),
+    (b"MMOR", image("a camera's raw file (Olympus)", DEVELOP)),
+    (b"IIU\0", image("a camera's raw file (Panasonic)", DEVELOP)),
+    (b"II\x1a\0\0\0HEAPCCDR", CANON),
+    (b"FOVb", image("a camera's raw file (Sigma)", DEVELOP)),
+    (b"\0MRM", image("a camera's raw file (Minolta)", DEVELOP)),
+    (b"\xff\x4f\xff\x51", JPEG_2000),
+    (b"\xff\x0a", JPEG_XL),
+    (b"GIF8", image("a GIF image", CONVERT)),
+    (b"8BPS", image("a Photoshop image (PSD)", CONVERT)),
+    (b"\x76\x2f\x31\x01", image("an OpenEXR image", CONVERT)),
+    (b"msid", image("a MrSID image", CONVERT)),
+    (
+        b"EHFA_HEADER_TAG",
+        image("an ERDAS Imagine image (.img)", CONVERT),
+    ),
+    (b"NITF0", image("a NITF image", CONVERT)),
+    (
+        b"%PDF-",
+        UnreadImageFormat {
+            name: "a PDF document",
+            advice: "give the photographs themselves, as JPEG, PNG or TIFF",
+            is_image: false,
+        },
+    ),
+    (b"\x1a\x45\xdf\xa3", VIDEO),
+];
+
 /// What a file is that holds an image in a format that is not read; `None` for all others.
 pub fn unread_image_format<'a>(
     path: &str,
@@ -61,40 +96,7 @@ pub fn unread_image_format<'a>(
         && bytes.get(6..10) == Some(&[0; 4])
         && matches!(bytes.get(14), Some(12 | 40 | 52 | 56 | 64 | 108 | 124));
     let is_ecw = bytes.first() == Some(&b'e') && path.to_ascii_lowercase().ends_with(".ecw");
-    let starts: [(&[u8], UnreadImageFormat); 18] = [
-        (
-            b"FUJIFILMCCD-RAW",
-            image("a camera's raw file (Fujifilm)", DEVELOP),
-        ),
-        (b"IIRO", image("a camera's raw file (Olympus)", DEVELOP)),
-        (b"IIRS", image("a camera's raw file (Olympus)", DEVELOP)),
-        (b"MMOR", image("a camera's raw file (Olympus)", DEVELOP)),
-        (b"IIU\0", image("a camera's raw file (Panasonic)", DEVELOP)),
-        (b"II\x1a\0\0\0HEAPCCDR", CANON),
-        (b"FOVb", image("a camera's raw file (Sigma)", DEVELOP)),
-        (b"\0MRM", image("a camera's raw file (Minolta)", DEVELOP)),
-        (b"\xff\x4f\xff\x51", JPEG_2000),
-        (b"\xff\x0a", JPEG_XL),
-        (b"GIF8", image("a GIF image", CONVERT)),
-        (b"8BPS", image("a Photoshop image (PSD)", CONVERT)),
-        (b"\x76\x2f\x31\x01", image("an OpenEXR image", CONVERT)),
-        (b"msid", image("a MrSID image", CONVERT)),
-        (
-            b"EHFA_HEADER_TAG",
-            image("an ERDAS Imagine image (.img)", CONVERT),
-        ),
-        (b"NITF0", image("a NITF image", CONVERT)),
-        (
-            b"%PDF-",
-            UnreadImageFormat {
-                name: "a PDF document",
-                advice: "give the photographs themselves, as JPEG, PNG or TIFF",
-                is_image: false,
-            },
-        ),
-        (b"\x1a\x45\xdf\xa3", VIDEO),
-    ];
-    let simple = starts.iter().find(|(start, _)| bytes.starts_with(start));
+    let simple = STARTS.iter().find(|(start, _)| bytes.starts_with(start));
     [
         (is_video, VIDEO),
         (is_webp, image("a WebP image", CONVERT)),
@@ -146,9 +148,13 @@ fn by_boxes(bytes: &[u8]) -> Option<UnreadImageFormat> {
 
 /// Raw files that are TIFFs: the first image in them is a thumbnail, or a sensor's pattern.
 fn raw_in_tiff(excerpt: Excerpt) -> Option<UnreadImageFormat> {
+    // Photometric interpretations of DNG, which others use too: a colour filter array, and linear
+    // raw values.
     const PATTERN_OF_A_SENSOR: u64 = 32803;
     const LINEAR_RAW: u64 = 34892;
-    const MOST: usize = 8;
+    // Directories that are looked at: raw files have a thumbnail, a preview and the sensor's
+    // values, in any order. Assumption.
+    const MOST_DIRECTORIES: usize = 8;
     let bytes = excerpt.start();
     if bytes.get(8..10) == Some(b"CR") {
         return Some(CANON);
@@ -163,11 +169,11 @@ fn raw_in_tiff(excerpt: Excerpt) -> Option<UnreadImageFormat> {
         let meaning = directory.number(tags::PHOTOMETRIC);
         meaning.is_some_and(|m| [PATTERN_OF_A_SENSOR, LINEAR_RAW].contains(&m))
     };
-    for directory in Directory::chain(excerpt).take(MOST) {
+    for directory in Directory::chain(excerpt).take(MOST_DIRECTORIES) {
         if directory.raw(tags::DNG_VERSION).is_some() {
             return Some(DNG);
         }
-        if is_raw(&directory) || directory.below().take(MOST).any(|d| is_raw(&d)) {
+        if is_raw(&directory) || directory.below().take(MOST_DIRECTORIES).any(|d| is_raw(&d)) {
             return Some(RAW);
         }
     }

@@ -32,6 +32,7 @@ pub fn load_window<'a>(
 /// Bytes that decoding a window takes beyond the window itself: the whole image, or one strip or
 /// tile.
 pub fn decoding_bytes<'a>(bytes: impl Into<Excerpt<'a>>, [width, height]: [u32; 2]) -> u64 {
+    // Three bands of two bytes: the most that a pixel is decoded to.
     const BYTES_PER_PIXEL: u64 = 6;
     let bytes = bytes.into();
     match is_tiff(bytes.start()).then(|| Tiff::open("", bytes)) {

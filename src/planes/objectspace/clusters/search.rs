@@ -63,8 +63,9 @@ impl ClusterSearch<'_> {
             .collect();
         let mut at = p.at;
         let mut stretch = p.stretch;
-        const ROUNDS: usize = 3;
-        for _ in 0..ROUNDS {
+        // Assumption: a place that lines agree on moves little after the second.
+        const VOTING_ROUNDS: usize = 3;
+        for _ in 0..VOTING_ROUNDS {
             let members = self.members(&all, &at);
             stretch = self.supported(&members, stretch)?;
             let near: Vec<_> = members

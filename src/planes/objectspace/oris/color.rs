@@ -30,7 +30,8 @@ impl ColorImage {
     }
 
     /// From grey values alone.
-    pub fn from_gray(gray: &Gray) -> Self {
+    #[cfg(test)]
+    pub(super) fn from_gray(gray: &Gray) -> Self {
         let none = Gray::new(gray.width, gray.height);
         Self::blurred([gray.clone(), none.clone(), none])
     }

@@ -2,7 +2,7 @@
 
 use super::integrals::{Lattice, RowSums};
 use super::occupied::Occupied;
-use super::partition::{Edge, ImagePartition, Node, OUTSIDE, PartitionRegion};
+use super::partition::{Edge, ImagePartition, Node, OUTSIDE_REGION, PartitionRegion};
 
 impl ImagePartition {
     /// The partition of a label image: vectors along the cracks between pixels of different labels.
@@ -112,14 +112,14 @@ struct Cracks<'a> {
 }
 
 impl Cracks<'_> {
-    /// The region of a pixel, counted from 1, with columns and rows counted from 1; [`OUTSIDE`]
-    /// beyond the border.
+    /// The region of a pixel, counted from 1, with columns and rows counted from 1;
+    /// [`OUTSIDE_REGION`] beyond the border.
     fn label(&self, column: usize, row: usize) -> u32 {
         let inside = (1..=self.width).contains(&column) && (1..=self.height).contains(&row);
         if inside {
             self.labels[(row - 1) * self.width + column - 1] + 1
         } else {
-            OUTSIDE
+            OUTSIDE_REGION
         }
     }
 

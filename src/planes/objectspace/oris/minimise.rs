@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::code_length::{CodeLength, LEAST_GAIN};
 use super::integrals::RegionMoments;
-use super::partition::{ImagePartition, OUTSIDE};
+use super::partition::{ImagePartition, OUTSIDE_REGION};
 use super::settle::settle;
 use crate::base::params::OrisParams;
 
@@ -84,7 +84,7 @@ impl Ord for Offer {
 /// the staircase of whole pixels along a slanted edge holds no information. (Without this,
 /// staircases between regions without noise stay: each step alone would cost more than its vector.)
 /// More rounds corners off.
-const MIXED_PX: f64 = 0.5;
+const MIXED_WIDTH_PX: f64 = 0.5;
 struct Descent {
     code: CodeLength,
     queue: BinaryHeap<Offer>,
@@ -164,7 +164,7 @@ impl Descent {
         if s.moved == RegionMoments::default() {
             return Some(self.code.vector_bits);
         }
-        if s.sides.contains(&OUTSIDE) {
+        if s.sides.contains(&OUTSIDE_REGION) {
             return None;
         }
         let [left, right] = s.sides.map(|r| p.regions[r as usize].moments);
@@ -172,7 +172,7 @@ impl Descent {
         if new_left.count < 1 || new_right.count < 1 {
             return None;
         }
-        if s.height_px <= MIXED_PX || (s.step && s.height_px < 1.0) {
+        if s.height_px <= MIXED_WIDTH_PX || (s.step && s.height_px < 1.0) {
             return Some(self.code.vector_bits);
         }
         let change = self.code.region(&new_left) + self.code.region(&new_right)
@@ -183,7 +183,7 @@ impl Descent {
 
     fn merge_gain(&self, p: &ImagePartition, i: u32, j: u32) -> Option<f64> {
         let (a, b) = (&p.regions[i as usize], &p.regions[j as usize]);
-        if !a.alive || !b.alive || i == OUTSIDE {
+        if !a.alive || !b.alive || i == OUTSIDE_REGION {
             return None;
         }
         let shared = f64::from(*a.shared.get(&j)?);

@@ -79,7 +79,7 @@ pub use region_lines::{RegionLine, region_lines};
 pub use segmentation::{ImageRegion, Segmentation, Vector};
 
 use self::integrals::RowSums;
-use self::partition::{ImagePartition, OUTSIDE};
+use self::partition::{ImagePartition, OUTSIDE_REGION};
 use crate::base::params::OrisParams;
 
 /// Segments an image. Empty for an image without pixels.
@@ -104,7 +104,7 @@ fn describe(p: &ImagePartition) -> Segmentation {
     let mut ids = vec![None; p.regions.len()];
     let mut next = 0;
     for (k, region) in p.regions.iter().enumerate() {
-        if region.alive && k != OUTSIDE as usize {
+        if region.alive && k != OUTSIDE_REGION as usize {
             ids[k] = Some(next);
             next += 1;
         }

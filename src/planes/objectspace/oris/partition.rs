@@ -10,7 +10,7 @@ use super::integrals::{Lattice, RegionMoments, RowSums};
 use super::occupied::Occupied;
 
 /// Beyond the border of the image.
-pub(crate) const OUTSIDE: u32 = 0;
+pub(crate) const OUTSIDE_REGION: u32 = 0;
 
 /// A vector of a boundary.
 #[derive(Clone, Copy, Debug)]
@@ -127,7 +127,7 @@ impl ImagePartition {
         let [pa, pb, pc] = [a, node, c].map(|n| self.nodes[n as usize].at);
         let cross = i64::from(pb.x - pa.x) * i64::from(pc.y - pa.y)
             - i64::from(pb.y - pa.y) * i64::from(pc.x - pa.x);
-        if cross != 0 && (sides.contains(&OUTSIDE) || self.occupied.within([pa, pb, pc])) {
+        if cross != 0 && (sides.contains(&OUTSIDE_REGION) || self.occupied.within([pa, pb, pc])) {
             return None;
         }
         let moved = self.sums.side(pa, pb) + self.sums.side(pb, pc) - self.sums.side(pa, pc);
@@ -196,7 +196,8 @@ impl ImagePartition {
             let far = self.nodes[far as usize].at;
             let turn = i64::from(to.x - at.x) * i64::from(far.y - at.y)
                 - i64::from(to.y - at.y) * i64::from(far.x - at.x);
-            (turn == 0 || !edge.sides.contains(&OUTSIDE)) && !self.occupied.within([at, to, far])
+            (turn == 0 || !edge.sides.contains(&OUTSIDE_REGION))
+                && !self.occupied.within([at, to, far])
         })
     }
 

@@ -70,8 +70,8 @@ pub fn region_lines(
 /// Half the length of a profile across a vector, pixels: what rounding to pixels and straightening
 /// may displace.
 const REACH_PX: f64 = 2.0;
-/// Step along a profile, pixels.
-const STEP_PX: f64 = 0.5;
+/// Step along a profile, pixels: two samples a pixel.
+const PROFILE_STEP_PX: f64 = 0.5;
 /// Distances from the line at which the grey values beside it are taken, pixels: outside the blur
 /// of the edge.
 const BESIDE_PX: [f64; 3] = [1.8, 2.6, 3.4];
@@ -131,7 +131,7 @@ fn measure(gray: &Gray, smooth: &Gray, vector: &Segment2, index: u32) -> Option<
 fn crest(smooth: &Gray, vector: &Segment2) -> Vec<[f64; 2]> {
     let (length, direction, normal) = (vector.length(), vector.direction(), vector.normal());
     let count = (length - 2.0).max(1.0) as usize;
-    let steps = (REACH_PX / STEP_PX) as i32;
+    let steps = (REACH_PX / PROFILE_STEP_PX) as i32;
     (0..count)
         .filter_map(|i| {
             let t = (length - count as f64 + 1.0) / 2.0 + i as f64;
@@ -140,7 +140,7 @@ fn crest(smooth: &Gray, vector: &Segment2) -> Vec<[f64; 2]> {
                 smooth.sample(p.x as f32, p.y as f32).map(f64::from)
             };
             let slope = |k: i32| {
-                let offset = f64::from(k) * STEP_PX;
+                let offset = f64::from(k) * PROFILE_STEP_PX;
                 Some(at(offset + 0.5)? - at(offset - 0.5)?)
             };
             let slopes: Vec<f64> = (-steps..=steps).map(slope).collect::<Option<_>>()?;
@@ -152,7 +152,7 @@ fn crest(smooth: &Gray, vector: &Segment2) -> Vec<[f64; 2]> {
                 return None;
             }
             let shift = (0.5 * (before - after) / bend).clamp(-0.5, 0.5);
-            let offset = (f64::from(best as i32 - steps) + shift) * STEP_PX;
+            let offset = (f64::from(best as i32 - steps) + shift) * PROFILE_STEP_PX;
             Some([t, offset])
         })
         .collect()

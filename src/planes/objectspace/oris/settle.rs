@@ -11,14 +11,14 @@ use std::collections::VecDeque;
 use super::code_length::{CodeLength, LEAST_GAIN};
 use super::edge_grid::EdgeGrid;
 use super::integrals::{Lattice, RegionMoments};
-use super::partition::{ImagePartition, OUTSIDE};
+use super::partition::{ImagePartition, OUTSIDE_REGION};
 
 /// All steps up to this are tried in either axis, pixels: boundaries run in any direction, and a
 /// node that slides along one needs steps in that direction. Assumption.
-const NEAR_PX: i32 = 2;
+const SHORT_STEPS_PX: i32 = 2;
 /// ... and one longer step in each of eight directions, pixels, where single steps each lose what
 /// several gain. Assumption.
-const FAR_PX: i32 = 4;
+const LONG_STEP_PX: i32 = 4;
 
 /// Moves nodes while any of these steps shortens the description; returns how many moves it took.
 pub(crate) fn settle(p: &mut ImagePartition, code: &CodeLength) -> usize {
@@ -79,14 +79,14 @@ fn best_step(
 
 fn offsets() -> impl Iterator<Item = (i32, i32)> {
     let square = |r: i32| (-r..=r).flat_map(move |y| (-r..=r).map(move |x| (x, y)));
-    let far = square(1).map(|(x, y)| (FAR_PX * x, FAR_PX * y));
-    square(NEAR_PX).chain(far).filter(|d| *d != (0, 0))
+    let far = square(1).map(|(x, y)| (LONG_STEP_PX * x, LONG_STEP_PX * y));
+    square(SHORT_STEPS_PX).chain(far).filter(|d| *d != (0, 0))
 }
 
 /// By how many bits the regions get shorter; minus infinity where one would lose all its pixels.
 fn gain(p: &ImagePartition, code: &CodeLength, shift: &[(u32, RegionMoments)]) -> f64 {
     let mut gain = 0.0;
-    for (region, won) in shift.iter().filter(|s| s.0 != OUTSIDE) {
+    for (region, won) in shift.iter().filter(|s| s.0 != OUTSIDE_REGION) {
         let old = p.regions[*region as usize].moments;
         let new = old + *won;
         if new.count < 1 {

@@ -15,13 +15,13 @@ pub(super) fn watershed(smooth: &[Gray; CHANNELS]) -> (Vec<u32>, usize) {
     let (mut labels, count) = minima(&level, w, h);
     let mut queue = BucketQueue::new(&level);
     for k in 0..w * h {
-        if labels[k] != NONE {
+        if labels[k] != UNLABELLED {
             queue.push(k, level[k]);
         }
     }
     while let Some(k) = queue.pop() {
         for n in neighbours(k, w, h) {
-            if labels[n] == NONE {
+            if labels[n] == UNLABELLED {
                 labels[n] = labels[k];
                 queue.push(n, level[n].max(level[k]));
             }
@@ -30,10 +30,11 @@ pub(super) fn watershed(smooth: &[Gray; CHANNELS]) -> (Vec<u32>, usize) {
     (labels, count)
 }
 
-const NONE: u32 = u32::MAX;
+/// A pixel that no region has reached.
+const UNLABELLED: u32 = u32::MAX;
 
 /// Steps of the gradient magnitude per grey range: a quarter grey level of 255 per pixel.
-const STEPS: f32 = 1020.0;
+const LEVELS_PER_GREY_RANGE: f32 = 1020.0;
 
 /// Gradient magnitude in whole steps.
 fn gradient_levels(smooth: &[Gray; CHANNELS]) -> Vec<u16> {
@@ -48,15 +49,15 @@ fn gradient_levels(smooth: &[Gray; CHANNELS]) -> Vec<u16> {
                 gx * gx + gy * gy
             };
             let sum: f32 = smooth.iter().map(square).sum();
-            levels.push((sum.sqrt() * STEPS).round() as u16);
+            levels.push((sum.sqrt() * LEVELS_PER_GREY_RANGE).round() as u16);
         }
     }
     levels
 }
 
-/// Labels the plateaus that have no lower neighbour; everything else is [`NONE`].
+/// Labels the plateaus that have no lower neighbour; everything else is [`UNLABELLED`].
 fn minima(level: &[u16], w: usize, h: usize) -> (Vec<u32>, usize) {
-    let mut labels = vec![NONE; w * h];
+    let mut labels = vec![UNLABELLED; w * h];
     let mut seen = vec![false; w * h];
     let mut count = 0;
     let mut plateau = Vec::new();

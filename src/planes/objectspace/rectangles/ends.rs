@@ -159,8 +159,9 @@ fn settle(strip: &PlaneStrip, crossings: &[Crossing], start: [f64; 2], views: us
     let square = start[0] == start[1];
     let mut at = start;
     let mut near: Vec<&Crossing> = Vec::new();
-    const ROUNDS: usize = 3;
-    for _ in 0..ROUNDS {
+    // Assumption: what crosses near the second mean crosses near the third.
+    const SETTLING_ROUNDS: usize = 3;
+    for _ in 0..SETTLING_ROUNDS {
         near = crossings.iter().filter(|c| lies_on(c, at, strip)).collect();
         if near.is_empty() {
             break;

@@ -2,8 +2,8 @@
 //! planes").
 //!
 //! Candidates that overlap in plan exclude each other. The set with the largest sum of measures is
-//! found exactly where few candidates stand in each other's way, by branch and bound; larger
-//! conflict_groups start from the greedy set and exchange one candidate for those that it excludes
+//! found exactly where few candidates stand in each other's way, by branch and bound; larger groups
+//! of conflicts start from the greedy set and exchange one candidate for those that it excludes
 //! while the sum grows.
 
 use i_overlay::core::fill_rule::FillRule;
@@ -16,8 +16,9 @@ use super::plane_evidence::area_2d;
 /// Candidates that overlap by more than this share of the smaller one exclude each other.
 /// Assumption: what errors of their ends do at shared sides.
 const MOST_OVERLAP: f64 = 0.08;
-/// Most candidates in a conflict_group that is solved exactly.
-const EXACT: usize = 24;
+/// Most candidates in a group of conflicts that is solved exactly. Assumption: what branch and
+/// bound takes no time for.
+const EXACTLY_SOLVED: usize = 24;
 
 /// Indices of the chosen candidates, ascending.
 pub(crate) fn best_set(candidates: &[PlaneCandidate]) -> Vec<usize> {
@@ -34,7 +35,7 @@ pub(crate) fn best_set(candidates: &[PlaneCandidate]) -> Vec<usize> {
     let weights: Vec<f64> = candidates.iter().map(|c| c.measure_nats).collect();
     let mut chosen = Vec::new();
     for conflict_group in conflict_groups(&conflicts) {
-        if conflict_group.len() <= EXACT {
+        if conflict_group.len() <= EXACTLY_SOLVED {
             chosen.extend(exact(&conflict_group, &conflicts, &weights));
         } else {
             chosen.extend(exchanged(&conflict_group, &conflicts, &weights));

@@ -80,9 +80,9 @@ fn quadrilateral(
     let [p, q] = [0, 1].map(|k| [left.at[k], right.at[k]]);
     let lengths = [p[1] - p[0], q[1] - q[0]];
     // Shorter ones are for triangles.
-    const SHORTEST_M: f64 = 0.3;
-    let long =
-        lengths[0].min(lengths[1]) >= SHORTEST_M && lengths[0].max(lengths[1]) >= LEAST_WIDTH_M;
+    const SHORTEST_SIDE_M: f64 = 0.3;
+    let long = lengths[0].min(lengths[1]) >= SHORTEST_SIDE_M
+        && lengths[0].max(lengths[1]) >= LEAST_WIDTH_M;
     long.then_some(())?;
     let sides = [
         [lengths[0], side_support(&a.stretches, p, views)],
@@ -109,10 +109,10 @@ pub(crate) fn triangle(
     views: usize,
 ) -> Option<StripPolygon> {
     // The tip is at least so far from either end of the base.
-    const INSIDE_M: f64 = 0.5;
+    const TIP_INSET_M: f64 = 0.5;
     let best = |side: f64| {
         let to_tip = |e: &&PlaneEnd| {
-            (e.at[1] - top).abs() <= 2.0 * POSITION_M && side * (e.at[0] - top) > INSIDE_M
+            (e.at[1] - top).abs() <= 2.0 * POSITION_M && side * (e.at[0] - top) > TIP_INSET_M
         };
         let on_side = ends.iter().filter(to_tip);
         on_side.max_by(|a, b| a.support.total_cmp(&b.support))

@@ -80,18 +80,7 @@ fn summary(html: &mut Html, reported: &ReportedModel) {
         buildings.len()
     ));
     html.figure(&overview(reported), "All buildings with their numbers");
-    html.push(format_args!("<ul class=\"legend\">"));
-    for kind in RoofEdgeKind::ALL {
-        let mut sample = Drawing::new(Vector2::new(10.0, 2.0), words(kind));
-        let (a, b) = (Point2::new(0.5, 1.0), Point2::new(9.5, 1.0));
-        sample.line(a, b, &format!("edge {}", kind.name()));
-        html.push(format_args!(
-            "<li>{}{}</li>",
-            sample.finish().trim_end(),
-            words(kind)
-        ));
-    }
-    html.push(format_args!("</ul>\n"));
+    legend(html);
     html.head(&[
         "Building",
         "Faces",
@@ -122,6 +111,22 @@ fn summary(html: &mut Html, reported: &ReportedModel) {
         ]);
     }
     html.end_table();
+}
+
+/// A sample of each kind of edge.
+fn legend(html: &mut Html) {
+    html.push(format_args!("<ul class=\"legend\">"));
+    for kind in RoofEdgeKind::ALL {
+        let mut sample = Drawing::new(Vector2::new(10.0, 2.0), words(kind));
+        let (a, b) = (Point2::new(0.5, 1.0), Point2::new(9.5, 1.0));
+        sample.line(a, b, &format!("edge {}", kind.name()));
+        html.push(format_args!(
+            "<li>{}{}</li>",
+            sample.finish().trim_end(),
+            words(kind)
+        ));
+    }
+    html.push(format_args!("</ul>\n"));
 }
 
 fn building(

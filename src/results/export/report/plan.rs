@@ -18,7 +18,7 @@ const MARGIN: f64 = 7.0;
 const LEAST_WITH_DIMENSION: f64 = 7.5;
 
 /// Dimensions stand so far from their edge, millimetres.
-const APART: f64 = 1.7;
+const DIMENSION_OFFSET_MM: f64 = 1.7;
 
 /// A plan, and the scale that it is drawn to, as 200 for 1:200.
 pub(super) struct Plan {
@@ -175,7 +175,7 @@ fn draw_dimension(sheet: &Sheet, drawing: &mut Drawing, edge: &RoofEdge, length:
     } else if turn <= -90.0 {
         turn += 180.0;
     }
-    let at = nalgebra::center(&a, &b) + out * APART;
+    let at = nalgebra::center(&a, &b) + out * DIMENSION_OFFSET_MM;
     drawing.words(at, turn, "dimension", &format!("{length:.2}"));
 }
 

@@ -153,22 +153,10 @@ fn add_building(
         }
         let surface = (semantics["values"][0][i].as_u64())
             .map_or(&Value::Null, |s| &semantics["surfaces"][s as usize]);
-        let roof_plane = match surface["type"].as_str() {
-            Some("RoofSurface") => plane_of(&rings),
-            _ => None,
-        };
-        let kind = match (roof_plane, surface["type"].as_str()) {
-            (Some(plane), _) => {
-                let facet = FacetId::from_index(read.model.facets.len());
-                let facet_of = facet_of(id, plane, &rings, surface);
-                read.model.facets.push(facet_of);
-                read.photographs.push(names(&surface["photographs"]));
-                facets.push(facet);
-                Surface::Roof(facet)
-            }
-            (None, Some("GroundSurface")) => Surface::Ground,
-            _ => Surface::Wall,
-        };
+        let kind = add_surface(read, id, &rings, surface);
+        if let Surface::Roof(facet) = kind {
+            facets.push(facet);
+        }
         let mut index = |p: &Point3<f64>| {
             let next = solid.vertices.len() as u32;
             // Bits, because the same vertex has the same ones.
@@ -197,6 +185,26 @@ fn add_building(
         solid,
     });
     Ok(true)
+}
+
+/// What a face of a building is; a roof becomes a facet.
+fn add_surface(
+    read: &mut ReadModel,
+    building: BuildingId,
+    rings: &[Vec<Point3<f64>>],
+    surface: &Value,
+) -> Surface {
+    match surface["type"].as_str() {
+        Some("RoofSurface") => plane_of(rings).map_or(Surface::Wall, |plane| {
+            let facet = FacetId::from_index(read.model.facets.len());
+            let facet_of = facet_of(building, plane, rings, surface);
+            read.model.facets.push(facet_of);
+            read.photographs.push(names(&surface["photographs"]));
+            Surface::Roof(facet)
+        }),
+        Some("GroundSurface") => Surface::Ground,
+        _ => Surface::Wall,
+    }
 }
 
 fn ring_of(ring: &Value, vertices: &[Point3<f64>]) -> Option<Vec<Point3<f64>>> {

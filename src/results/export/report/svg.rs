@@ -88,7 +88,9 @@ pub(super) fn escaped(text: &str) -> String {
 
 /// A place well inside rings, for a word: of a grid the point farthest from all sides.
 pub(super) fn place_inside(rings: &[Vec<Point2<f64>>]) -> Point2<f64> {
-    const STEPS: usize = 14;
+    // Points of the grid a side. Assumption: a word needs no better place than a fourteenth of the
+    // shape.
+    const GRID_STEPS: usize = 14;
     let [low, high] = crate::base::geometry::bounds(rings.iter().flatten().copied());
     let sides = || {
         rings.iter().flat_map(|ring| {
@@ -107,9 +109,9 @@ pub(super) fn place_inside(rings: &[Vec<Point2<f64>>]) -> Point2<f64> {
         }
         if is_inside { nearest } else { -nearest }
     };
-    let at = |i: usize| (i as f64 + 0.5) / STEPS as f64;
-    let grid = (0..STEPS * STEPS).map(|i| {
-        let share = Vector2::new(at(i % STEPS), at(i / STEPS));
+    let at = |i: usize| (i as f64 + 0.5) / GRID_STEPS as f64;
+    let grid = (0..GRID_STEPS * GRID_STEPS).map(|i| {
+        let share = Vector2::new(at(i % GRID_STEPS), at(i / GRID_STEPS));
         low + (high - low).component_mul(&share)
     });
     let deepest = grid.max_by(|p, q| depth(p).total_cmp(&depth(q)));

@@ -22,7 +22,7 @@ const OCCLUDED_SHARE: f64 = 0.5;
 /// Walls stand back below their eaves by up to this, metres. Assumption.
 const EAVE_OVERHANG_M: f64 = 0.8;
 /// The odds of a line before there was a model count as far as these, nats.
-const SURE_NATS: f64 = 6.0;
+const PRIOR_NATS: f64 = 6.0;
 
 /// What speaks for each line and against it, in the finished model. `facets_on_it` is the number of
 /// facets that were found with a line, by its position.
@@ -65,7 +65,7 @@ fn nats_before(line: &Line3d) -> f64 {
         return 0.0;
     }
     let [for_it, against] = [line.probability, 1.0 - line.probability].map(|p| p.max(1e-9));
-    (ln(for_it) - ln(against)).clamp(-SURE_NATS, SURE_NATS)
+    (ln(for_it) - ln(against)).clamp(-PRIOR_NATS, PRIOR_NATS)
 }
 
 /// Can a view see most of the stretch that it supports?

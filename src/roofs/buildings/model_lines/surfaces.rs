@@ -8,9 +8,9 @@ use crate::roofs::model::{Facet, Occluders};
 
 /// A line lies on a surface that is no farther than this from it, metres, in plan and, besides its
 /// standard deviation, in height.
-const NEAR_M: f64 = 0.25;
+const SURFACE_TOLERANCE_M: f64 = 0.25;
 /// Spacing of the samples along a stretch, metres, and their least and greatest number.
-const STEP_M: f64 = 0.3;
+const SAMPLE_SPACING_M: f64 = 0.3;
 const PLACES: [usize; 2] = [5, 64];
 
 /// Roofs, the walls below them and the ground.
@@ -31,13 +31,13 @@ impl<'a> Surfaces<'a> {
 
     /// The share of a line that lies on roofs, walls or the ground.
     pub(super) fn share_of(&self, line: &Line3d) -> f64 {
-        let tolerance = NEAR_M + line.sigma_m;
+        let tolerance = SURFACE_TOLERANCE_M + line.sigma_m;
         let beside = [
             (0.0, 0.0),
-            (NEAR_M, 0.0),
-            (-NEAR_M, 0.0),
-            (0.0, NEAR_M),
-            (0.0, -NEAR_M),
+            (SURFACE_TOLERANCE_M, 0.0),
+            (-SURFACE_TOLERANCE_M, 0.0),
+            (0.0, SURFACE_TOLERANCE_M),
+            (0.0, -SURFACE_TOLERANCE_M),
         ];
         share_where(line, [0.0, 1.0], |p| {
             // Walls fill what is between the highest and the lowest surface.
@@ -61,7 +61,7 @@ pub(super) fn share_where(
     condition: impl Fn(&Point3<f64>) -> bool,
 ) -> f64 {
     let metres = (to - from).abs() * line.segment.length();
-    let count = ((metres / STEP_M) as usize).clamp(PLACES[0], PLACES[1]);
+    let count = ((metres / SAMPLE_SPACING_M) as usize).clamp(PLACES[0], PLACES[1]);
     let place = |i: usize| line.at(from + (to - from) * (i as f64 + 0.5) / count as f64);
     let fulfilled = (0..count).filter(|&i| condition(&place(i))).count();
     fulfilled as f64 / count as f64

@@ -47,7 +47,7 @@ pub(crate) struct Arrangement {
 type PlanTriangulation = ConstrainedDelaunayTriangulation<spade::Point2<f64>>;
 
 /// Crossings nearer than this become one vertex, metres.
-const SNAP: f64 = 0.06;
+const SNAP_DISTANCE_M: f64 = 0.06;
 
 impl Arrangement {
     /// Cuts the plan by the borders.
@@ -195,7 +195,9 @@ fn split_at_crossings(borders: &[Border]) -> (Vec<Point2<f64>>, Vec<(usize, usiz
     let mut places: Vec<Point2<f64>> = borders.iter().flat_map(|b| [b.a, b.b]).collect();
     let index = PlanIndex::new(borders.iter().map(|b| [b.a, b.b]));
     let crossings = crate::base::execution::map(borders, |i, p| -> Vec<Point2<f64>> {
-        let near = index.touching([p.a, p.b], SNAP).map(|j| j as usize);
+        let near = index
+            .touching([p.a, p.b], SNAP_DISTANCE_M)
+            .map(|j| j as usize);
         let mut later: Vec<usize> = near.filter(|j| *j > i).collect();
         later.sort();
         let crossings = later.into_iter().filter_map(|j| crossing(p, &borders[j]));
@@ -223,7 +225,7 @@ fn crossing(p: &Border, q: &Border) -> Option<Point2<f64>> {
     }
     let r: Vector2<f64> = q.a - p.a;
     let (s, t) = (r.perp(&e) / cross, r.perp(&d) / cross);
-    let (es, et) = (SNAP / d.norm(), SNAP / e.norm());
+    let (es, et) = (SNAP_DISTANCE_M / d.norm(), SNAP_DISTANCE_M / e.norm());
     ((-es..=1.0 + es).contains(&s) && (-et..=1.0 + et).contains(&t)).then(|| p.a + d * s)
 }
 
@@ -239,9 +241,11 @@ impl SnappedVertices {
         let of_places = PlanIndex::new(places.iter().map(|p| [*p; 2]));
         let mut is_vertex = vec![false; places.len()];
         for (i, p) in places.iter().enumerate() {
-            is_vertex[i] = !of_places.touching([*p; 2], SNAP).any(|j| {
+            is_vertex[i] = !of_places.touching([*p; 2], SNAP_DISTANCE_M).any(|j| {
                 let j = j as usize;
-                j < i && is_vertex[j] && (places[j] - p).norm_squared() <= SNAP * SNAP
+                j < i
+                    && is_vertex[j]
+                    && (places[j] - p).norm_squared() <= SNAP_DISTANCE_M * SNAP_DISTANCE_M
             });
         }
         let vertices = places.iter().zip(is_vertex);
@@ -257,12 +261,15 @@ impl SnappedVertices {
         let d = d / length;
         let mut on: Vec<(f64, usize)> = self
             .index
-            .touching([border.a, border.b], SNAP)
+            .touching([border.a, border.b], SNAP_DISTANCE_M)
             .filter_map(|v| {
                 let v = v as usize;
                 let r = self.points[v] - border.a;
                 let t = r.dot(&d);
-                (d.perp(&r).abs() <= SNAP && t >= -SNAP && t <= length + SNAP).then_some((t, v))
+                (d.perp(&r).abs() <= SNAP_DISTANCE_M
+                    && t >= -SNAP_DISTANCE_M
+                    && t <= length + SNAP_DISTANCE_M)
+                    .then_some((t, v))
             })
             .collect();
         on.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

@@ -132,13 +132,13 @@ impl CellBorder {
     /// Do two planes meet here at an angle?
     fn is_crease(&self, a: &Plane, b: &Plane) -> bool {
         let apart = (self.ends).map(|p| (a.z_at(p.x, p.y) - b.z_at(p.x, p.y)).abs());
-        apart.iter().all(|apart| *apart < MEETING) && !are_one_plane(a, b)
+        apart.iter().all(|apart| *apart < MEETING_HEIGHT_M) && !are_one_plane(a, b)
     }
 
     /// How much of the border is the top of a slope that ends in the air, 0 to 1.
     fn open_top(&self, plane: &Plane, beyond: Option<&Plane>, outwards: &Vector2<f64>) -> f64 {
         let height = |plane: &Plane| mean_height(plane, &self.ends);
-        match beyond.is_some_and(|other| height(other) > height(plane) - MEETING) {
+        match beyond.is_some_and(|other| height(other) > height(plane) - MEETING_HEIGHT_M) {
             true => 0.0,
             false => open_top(plane, outwards),
         }
@@ -157,7 +157,7 @@ pub(super) fn open_top(plane: &Plane, outwards: &Vector2<f64>) -> f64 {
 
 /// Are two planes that meet one plane that was found twice, and their border no crease?
 pub(super) fn are_one_plane(a: &Plane, b: &Plane) -> bool {
-    a.normal.dot(&b.normal) >= SAME_COSINE
+    a.normal.dot(&b.normal) >= SAME_PLANE_COSINE
 }
 
 /// Of the two ends of a border.
@@ -172,14 +172,14 @@ fn is_line_height(height: f64, z: f64) -> bool {
 }
 
 /// Planes at less than 6 degrees that meet are one plane found twice: the cosine of that angle.
-const SAME_COSINE: f64 = 0.994_521_895_368_273_3;
+const SAME_PLANE_COSINE: f64 = 0.994_521_895_368_273_3;
 /// Share of the cost of a border where two planes meet without a line. Measured: 0.1 breaks roofs
 /// into more pieces.
 pub(super) const CREASE: f64 = 0.3;
 /// Sine of the least slope that has a top (6 degrees).
 const LEAST_SLOPE_SINE: f64 = 0.1;
 /// Planes meet when their heights differ by less, metres.
-pub(super) const MEETING: f64 = 0.25;
+pub(super) const MEETING_HEIGHT_M: f64 = 0.25;
 /// A line lies in a plane's border when their heights differ by less, metres.
 pub(crate) const LINE_HEIGHT: f64 = 0.35;
 

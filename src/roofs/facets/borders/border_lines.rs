@@ -132,7 +132,8 @@ fn stretches(
     high: Point2<f64>,
     inside: impl Fn(&Point2<f64>) -> bool,
 ) -> Vec<Border> {
-    const STEP: f64 = 0.25;
+    // Assumption: the pieces of a line that matter are several times as long.
+    const SAMPLE_SPACING_M: f64 = 0.25;
     let norm = direction.norm();
     if norm < 1e-9 {
         return Vec::new();
@@ -142,12 +143,12 @@ fn stretches(
     let center = Point2::from((low.coords + high.coords) * 0.5);
     let t0 = (center - point).dot(&d);
     let half = 0.5 * (high - low).norm();
-    let steps = (2.0 * half / STEP).ceil() as usize;
+    let steps = (2.0 * half / SAMPLE_SPACING_M).ceil() as usize;
     let mut found = Vec::new();
     let mut start: Option<Point2<f64>> = None;
     let mut last = *point;
     for k in 0..=steps {
-        let p = point + d * (t0 - half + k as f64 * STEP);
+        let p = point + d * (t0 - half + k as f64 * SAMPLE_SPACING_M);
         if inside(&p) {
             start = start.or(Some(p));
             last = p;

@@ -15,11 +15,11 @@ use crate::planes::terrain::Ground;
 
 /// How far beside its eave, in plan, the foot of a wall may be, metres. Assumption: no overhang is
 /// wider.
-const OVERHANG: f64 = 1.0;
+const OVERHANG_M: f64 = 1.0;
 /// Sine of the angle at which two lines run side by side.
 const PARALLEL_SINE: f64 = 0.15;
 /// Share of a line that others must run along to take its place. Assumption: half.
-const MOST: f64 = 0.5;
+const ALONGSIDE_SHARE: f64 = 0.5;
 
 /// The lines that may bound a facet.
 pub(crate) fn bounding_lines(
@@ -52,16 +52,18 @@ pub(crate) fn bounding_lines(
 
 /// Does a line lie in a plane?
 fn lies_in(plane: &Plane, line: &Segment3) -> bool {
-    const NEAR: f64 = 0.2;
-    plane.signed_distance(&line.p0).abs() < NEAR && plane.signed_distance(&line.p1).abs() < NEAR
+    // Assumption: some standard deviations of a line's height.
+    const IN_PLANE_M: f64 = 0.2;
+    plane.signed_distance(&line.p0).abs() < IN_PLANE_M
+        && plane.signed_distance(&line.p1).abs() < IN_PLANE_M
 }
 
 /// Do others run along most of a line, in plan, within an overhang's width?
 fn beside_others(line: &Segment3, others: &[Segment3]) -> bool {
     let beside = (others.iter()).filter_map(|other| line.alongside(other, PARALLEL_SINE));
-    let stretches = beside.filter(|a| a.apart <= OVERHANG).map(|a| a.stretch);
+    let stretches = beside.filter(|a| a.apart <= OVERHANG_M).map(|a| a.stretch);
     let length = (line.p1.xy() - line.p0.xy()).norm();
-    length > 0.0 && covered(stretches, [0.0, length]) >= MOST * length
+    length > 0.0 && covered(stretches, [0.0, length]) >= ALONGSIDE_SHARE * length
 }
 
 #[cfg(test)]

@@ -20,12 +20,12 @@ use crate::roofs::facets::point_cloud::CloudEvidence;
 const STRIP_M: f64 = 0.1;
 /// How often the two spans of the rectangle are sought by turns. Assumption: a third time changes
 /// few.
-const TURNS: usize = 2;
+const SPAN_ROUNDS: usize = 2;
 /// Planes with less evidence than this, nats, get no closing lines: that of about half a square
 /// metre of agreement.
-const LEAST_NATS: f64 = 2.5;
+const LEAST_EVIDENCE_NATS: f64 = 2.5;
 /// How far an end goes beyond the sides across it, metres, to meet their lines.
-const OVER_M: f64 = 0.5;
+const OVERRUN_M: f64 = 0.5;
 
 /// Lines where planes with a half-plane, or proposed ones, seem to end, up to four for each, unless
 /// a real line shows that end.
@@ -65,7 +65,7 @@ fn sides(
     let across = Vector2::new(-along.y, along.x);
     let votes = votes(h, windows, cloud, &start, [&along, &across]);
     let sample_m = h.map.grid.of_samples().step;
-    let least = LEAST_NATS / (sample_m * sample_m);
+    let least = LEAST_EVIDENCE_NATS / (sample_m * sample_m);
     let [(t0, t1), (u0, u1)] = best_rectangle(&votes, reach.norm(), least)?;
     let at = |t: f64, u: f64| start + along * t + across * u;
     let half_window = 0.5 * WINDOW as f64 * h.map.grid.step + STRIP_M;
@@ -82,7 +82,7 @@ fn sides(
         .filter(|side| !(lines.iter()).any(|l| shows(l, side, half_window)));
     Some(
         open.map(|[a, b]| {
-            let over = (b - a).try_normalize(1e-6).unwrap_or_default() * OVER_M;
+            let over = (b - a).try_normalize(1e-6).unwrap_or_default() * OVERRUN_M;
             Border {
                 kind: BorderKind::Closing,
                 a: a - over,
@@ -148,7 +148,7 @@ fn votes(
 fn best_rectangle(votes: &[Vote], length: f64, least: f64) -> Option<[(f64, f64); 2]> {
     let mut spans = [(0.0, length), (0.0, 0.0)];
     let mut sum = 0.0;
-    for axis in [1, 0].repeat(TURNS) {
+    for axis in [1, 0].repeat(SPAN_ROUNDS) {
         let (from, to) = spans[1 - axis];
         let beside = |v: &&Vote| v.at[1 - axis] >= from && v.at[1 - axis] <= to;
         let inside = votes.iter().filter(beside).map(|v| (v.at[axis], v.nats));

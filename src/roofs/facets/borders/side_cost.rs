@@ -5,7 +5,7 @@
 
 use nalgebra::{Point2, Vector2};
 
-use super::border_cost::{CREASE, LINE_HEIGHT, MEETING, are_one_plane, open_top};
+use super::border_cost::{CREASE, LINE_HEIGHT, MEETING_HEIGHT_M, are_one_plane, open_top};
 use super::line_index::{BESIDE_LINE, LineIndex};
 use crate::base::evidence::ON_LINE;
 use crate::base::geometry::{Plane, Segment3};
@@ -32,7 +32,7 @@ pub(crate) fn charged_length(
     let crease = match (left, right) {
         (Some(left), Some(right)) if !are_one_plane(left, right) => {
             let apart = side.height(left).minus(side.height(right));
-            apart.within(-MEETING, MEETING)
+            apart.within(-MEETING_HEIGHT_M, MEETING_HEIGHT_M)
         }
         _ => NOWHERE,
     };
@@ -163,7 +163,9 @@ impl BoundedPlane {
         let above = |beyond: &Plane| side.height(beyond).minus(height);
         Self {
             height,
-            goes_on: beyond.map_or(NOWHERE, |b| above(b).within(-MEETING, f64::INFINITY)),
+            goes_on: beyond.map_or(NOWHERE, |b| {
+                above(b).within(-MEETING_HEIGHT_M, f64::INFINITY)
+            }),
             open_top: open_top(plane, outwards),
         }
     }
@@ -196,8 +198,8 @@ impl Linear {
     /// Where it lies between two values.
     fn within(self, low: f64, high: f64) -> Stretch {
         // What changes by less does not over any side.
-        const LEVEL: f64 = 1e-12;
-        if self.rate.abs() < LEVEL {
+        const LEAST_RATE: f64 = 1e-12;
+        if self.rate.abs() < LEAST_RATE {
             return match low < self.at_start && self.at_start < high {
                 true => [f64::NEG_INFINITY, f64::INFINITY],
                 false => NOWHERE,

@@ -10,11 +10,11 @@ use crate::base::geometry::bounds;
 use crate::planes::photoconsistency::PlanGrid;
 
 /// Samples are so far apart, metres.
-const STEP_M: f64 = 0.2;
+const SAMPLE_SPACING_M: f64 = 0.2;
 /// How far outlines may grow beyond all of them, metres: their sides are not longer, mostly.
 const MARGIN_M: f64 = 5.0;
 /// No facet covers a sample.
-const NOBODY: u32 = u32::MAX;
+const NO_OWNER: u32 = u32::MAX;
 
 /// Samples of the plan, with the facet that covers each.
 pub(super) struct PlanArea<'a> {
@@ -39,13 +39,13 @@ impl<'a> PlanArea<'a> {
         let [low, high] = bounds(used.map(|&v| rings.vertices[v]));
         (low.x < high.x).then_some(())?;
         let margin = Vector2::repeat(MARGIN_M);
-        let grid = PlanGrid::covering(low - margin, high + margin, STEP_M);
+        let grid = PlanGrid::covering(low - margin, high + margin, SAMPLE_SPACING_M);
         let facets = labels.len();
         let mut area = Self {
             energy,
             labels,
             cells: energy.arrangement.raster(&grid),
-            owners: vec![NOBODY; grid.width * grid.height],
+            owners: vec![NO_OWNER; grid.width * grid.height],
             grid,
         };
         for facet in 0..facets {
@@ -140,7 +140,7 @@ impl<'a> PlanArea<'a> {
         for owner in samples.iter().flat_map(|s| s.clone()) {
             let owner = &mut self.owners[owner];
             if let Some((_, to)) = sides_of(chain, *owner) {
-                *owner = to.map_or(NOBODY, |facet| facet as u32);
+                *owner = to.map_or(NO_OWNER, |facet| facet as u32);
             }
         }
     }
@@ -155,7 +155,7 @@ impl<'a> PlanArea<'a> {
 
 /// The facet, or none, that a sample beside a chain belongs to, and the one beyond the chain.
 fn sides_of(chain: &Chain, owner: u32) -> Option<(Option<usize>, Option<usize>)> {
-    let owner = (owner != NOBODY).then_some(owner as usize);
+    let owner = (owner != NO_OWNER).then_some(owner as usize);
     let (left, right) = (Some(chain.left), chain.right);
     match owner {
         o if o == left => Some((left, right)),

@@ -22,7 +22,7 @@ use crate::roofs::facets::borders::charged_length;
 const PLACE_M: f64 = 0.25;
 
 /// Energies that differ by less are the same, nats: likelihoods a hundredth apart decide nothing.
-const SAME_NATS: f64 = 0.01;
+const ENERGY_TOLERANCE_NATS: f64 = 0.01;
 
 /// A simpler way between two vertices of a chain.
 #[derive(Clone, Debug, PartialEq)]
@@ -190,7 +190,11 @@ impl RatedChain<'_> {
             let Move { stretch, way } = &rated.to_make;
             // Of two ways that cost the same the one with fewer vertices is taken.
             let fewer = way.len() < stretch[1] - stretch[0] + 1;
-            let needed = if fewer { -SAME_NATS } else { SAME_NATS };
+            let needed = if fewer {
+                -ENERGY_TOLERANCE_NATS
+            } else {
+                ENERGY_TOLERANCE_NATS
+            };
             let so_far = best.map_or(needed, |(gain, _)| larger(gain, needed));
             let most = rated.without_area_and_sides + nats;
             // Whatever lines run along it, the way costs something.

@@ -6,13 +6,13 @@ use super::rings::{Chain, Links, Rings};
 use crate::base::geometry::bounds;
 
 /// Sides that meet at less than this sine (15 degrees) have no useful crossing.
-const LEAST_SINE: f64 = 0.25;
+const CROSSING_SINE: f64 = 0.25;
 /// No side of a simpler way is shorter, metres: about the width of an edge in the images.
-const SHORTEST_M: f64 = 0.3;
+const SHORTEST_SIDE_M: f64 = 0.3;
 /// Sides that have no vertex in common are farther apart, metres: nearer ones would be welded.
-const APART_M: f64 = 0.05;
+const SIDE_CLEARANCE_M: f64 = 0.05;
 /// Sides at less than this sine, from one vertex to one side, lie on each other.
-const FOLDED_SINE: f64 = 0.02;
+const FOLD_SINE: f64 = 0.02;
 
 /// The vertices between the ends of simpler ways: none, or one where a side goes straight on from
 /// one end and meets one that comes straight to the other, or the perpendicular through it.
@@ -26,18 +26,18 @@ pub(super) fn simpler(
     let leaving = directions(chain, [from, from + 1], rings, links);
     let arriving = directions(chain, [to, to - 1], rings, links);
     let ahead = |x: &Point2<f64>, end: usize, direction: &Vector2<f64>| {
-        (x - ends[end]).dot(direction) > SHORTEST_M
+        (x - ends[end]).dot(direction) > SHORTEST_SIDE_M
     };
     let crossings = leaving.iter().flat_map(|d| {
         arriving.iter().filter_map(move |e| {
             let sine = d.perp(e);
             let x = ends[0] + d * ((ends[1] - ends[0]).perp(e) / sine);
-            (sine.abs() > LEAST_SINE && ahead(&x, 0, d) && ahead(&x, 1, e)).then_some(x)
+            (sine.abs() > CROSSING_SINE && ahead(&x, 0, d) && ahead(&x, 1, e)).then_some(x)
         })
     });
     let foot = |end: usize, direction: &Vector2<f64>| {
         let x = ends[end] + direction * (ends[1 - end] - ends[end]).dot(direction);
-        let is_apart = (x - ends[1 - end]).norm() > SHORTEST_M;
+        let is_apart = (x - ends[1 - end]).norm() > SHORTEST_SIDE_M;
         (is_apart && ahead(&x, end, direction)).then_some(x)
     };
     let feet = [(0, &leaving), (1, &arriving)];
@@ -68,7 +68,10 @@ pub(super) fn meets_others(
 ) -> bool {
     let [low, high] = bounds(way.iter().copied());
     let is_far = |p: &Point2<f64>, q: &Point2<f64>| {
-        (0..2).any(|i| p[i].max(q[i]) < low[i] - APART_M || p[i].min(q[i]) > high[i] + APART_M)
+        (0..2).any(|i| {
+            p[i].max(q[i]) < low[i] - SIDE_CLEARANCE_M
+                || p[i].min(q[i]) > high[i] + SIDE_CLEARANCE_M
+        })
     };
     let gone = &chain.vertices[from..=to];
     let goes = |a: usize, b: usize| {
@@ -94,7 +97,7 @@ pub(super) fn meets_others(
                         let [vertex, far] = if at_a { side } else { [side[1], side[0]] };
                         let other = if w[0] == vertex { w[1] } else { w[0] };
                         let (u, v) = (far - vertex, other - vertex);
-                        u.perp(&v).abs() < FOLDED_SINE * u.norm() * v.norm() && u.dot(&v) > 0.0
+                        u.perp(&v).abs() < FOLD_SINE * u.norm() * v.norm() && u.dot(&v) > 0.0
                     }
                 }
             })
@@ -109,7 +112,7 @@ fn meet([a, b]: &[Point2<f64>; 2], [p, q]: &[Point2<f64>; 2]) -> bool {
     let is_near = |x: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>| {
         let along = b - a;
         let t = (x - a).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
-        (x - (a + along * t.clamp(0.0, 1.0))).norm() < APART_M
+        (x - (a + along * t.clamp(0.0, 1.0))).norm() < SIDE_CLEARANCE_M
     };
     crosses || is_near(a, p, q) || is_near(b, p, q) || is_near(p, a, b) || is_near(q, a, b)
 }

@@ -10,7 +10,7 @@ use crate::roofs::facets::delineation::Outline;
 use crate::roofs::model::{Facet, Occluders};
 
 /// Share of a facet that another plane must be able to cover to be its rival. Assumption.
-const ALMOST_ALL: f64 = 0.9;
+const RIVAL_SHARE: f64 = 0.9;
 
 /// Advantage of a facet that has no rival over its rivals, standard deviations: more than any has.
 const NO_RIVAL: f64 = 12.0;
@@ -84,7 +84,7 @@ fn rival_margin(competing: &CompetingPlanes, outline: &Outline, inside: &Interio
     for (plane, evidence) in (outline.cells.iter()).flat_map(|&c| competing.evidence.of_cell(c)) {
         areas[*plane as usize] += evidence.area;
     }
-    let most = ALMOST_ALL * areas[outline.plane as usize];
+    let most = RIVAL_SHARE * areas[outline.plane as usize];
     let others = (0..competing.planes.len() as u32).filter(|p| *p != outline.plane);
     let rivals = others.filter(|p| areas[*p as usize] >= most);
     let advantages = rivals.map(|p| inside.advantage_of(&competing.maps[p as usize]));

@@ -46,9 +46,10 @@ impl<'m> InteriorWindows<'m> {
 
     /// Some of the windows' middles, in plan, spread over the facet.
     pub(super) fn places(&self) -> impl Iterator<Item = Point2<f64>> {
-        const MOST: usize = 500;
+        // Assumption: the mean over some hundreds is known to a few percent.
+        const MOST_PLACES: usize = 500;
         let grid = &self.map.grid;
-        let every = self.windows.len().div_ceil(MOST).max(1);
+        let every = self.windows.len().div_ceil(MOST_PLACES).max(1);
         let windows = self.windows.iter().step_by(every);
         windows.map(|k| grid.center(k % grid.width, k / grid.width))
     }

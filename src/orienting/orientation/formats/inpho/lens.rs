@@ -65,12 +65,13 @@ impl InphoLens {
 
     /// Radii at which the distortion is known or sampled, mm, up to the farthest corner.
     pub(super) fn radii(&self, farthest_mm: f64) -> Vec<f64> {
-        const STEPS: i32 = 24;
+        // Radii at which a polynomial is sampled. Assumption: several for each of its terms.
+        const RADII: i32 = 24;
         match self {
             Self::None => Vec::new(),
             Self::Polynomial(..) => {
-                let radius = |i| farthest_mm * f64::from(i) / f64::from(STEPS);
-                (1..=STEPS).map(radius).collect()
+                let radius = |i| farthest_mm * f64::from(i) / f64::from(RADII);
+                (1..=RADII).map(radius).collect()
             }
             Self::Table(rows) => rows.iter().map(|row| row[0]).filter(|&r| r > 0.0).collect(),
         }

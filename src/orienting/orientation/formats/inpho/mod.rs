@@ -110,6 +110,8 @@ impl InteriorOrientation {
 
     /// Pairs of (ideal, measured) positions, pixels.
     fn lens_pairs(&self) -> Option<Vec<(Vector2<f64>, Vector2<f64>)>> {
+        // Directions in which the lens is sampled: decentring turns once around, and eight samples
+        // a turn show it well. Assumption: twice that.
         const DIRECTIONS: i32 = 16;
         let mm_from_pixel = self.pixel_from_mm.try_inverse()?;
         let (w, h) = (f64::from(self.size.0), f64::from(self.size.1));

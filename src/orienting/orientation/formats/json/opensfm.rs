@@ -13,9 +13,9 @@ use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::{parse, refuse};
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::base::geometry::rotation_from_axis_angle;
-use crate::orienting::orientation::formats::left_out::{LeftOut, few};
+use crate::orienting::orientation::formats::left_out::LeftOut;
 use crate::orienting::orientation::formats::text::quoted_long;
 use crate::orienting::orientation::geodesy::Anchor;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
@@ -122,15 +122,13 @@ pub(crate) fn read_shots(
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Orientation>> {
     let shots: OdmShots = parse(path, text)?;
-    let of_file = match cameras {
-        Some((path, text)) => Some((path, parse::<BTreeMap<String, Value>>(path, text)?)),
-        None => {
-            warnings.push(format!(
-                "{path}: there is no cameras.json: the principal point is taken to be in the middle, and the lens free of distortion"
-            ));
-            None
-        }
-    };
+    let read = |(path, text)| Ok::<_, Error>((path, parse::<BTreeMap<String, Value>>(path, text)?));
+    let of_file = cameras.map(read).transpose()?;
+    if of_file.is_none() {
+        warnings.push(format!(
+            "{path}: there is no cameras.json: the principal point is taken to be in the middle, and the lens free of distortion"
+        ));
+    }
     let (mut found, mut left_out, mut guessed) = (Vec::new(), LeftOut::default(), BTreeMap::new());
     for OdmShot { properties: shot } in shots.features {
         let read = match &of_file {
@@ -157,20 +155,18 @@ pub(crate) fn read_shots(
                 (0, _) | (_, 0) => camera.size(),
                 size => size,
             };
-            Ok((size, camera.k(path, size)?, camera))
+            // Here the translation is the projection centre itself.
+            let r = rotation_from_axis_angle(&Vector3::from(shot.rotation)).into_inner();
+            let center = Point3::from(shot.translation);
+            Ok(Orientation {
+                distortion: camera.distortion(),
+                size: Some(size),
+                ..pinhole(&shot.filename, path, camera.k(path, size)?, r, center)
+            })
         });
         match read {
             Err(reason) => left_out.add(&shot.filename, &reason),
-            Ok((size, k, camera)) => {
-                // Here the translation is the projection centre itself.
-                let r = rotation_from_axis_angle(&Vector3::from(shot.rotation)).into_inner();
-                let center = Point3::from(shot.translation);
-                found.push(Orientation {
-                    distortion: camera.distortion(),
-                    size: Some(size),
-                    ..pinhole(&shot.filename, path, k, r, center)
-                });
-            }
+            Ok(orientation) => found.push(orientation),
         }
     }
     for (name, count) in guessed {
@@ -206,7 +202,7 @@ fn unknown_camera(
             true => "it holds no camera: take the file of the same run".to_owned(),
             false => quoted_long(&format!(
                 "it has {}: take the file of the same run",
-                few(&names)
+                listed(&names)
             )),
         },
     }

@@ -13,9 +13,9 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use roxmltree::{Document, Node};
 
 use super::{Sensor, XmlReader, child, parse, text_of};
-use crate::base::error::{Error, Result};
+use crate::base::error::{Error, Result, listed};
 use crate::orienting::orientation::angles::rotation_from_omega_phi_kappa;
-use crate::orienting::orientation::formats::left_out::{LeftOut, few};
+use crate::orienting::orientation::formats::left_out::LeftOut;
 use crate::orienting::orientation::geodesy::Anchor;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 use crate::orienting::orientation::reference::{StatedReference, epsg_of};
@@ -202,7 +202,7 @@ impl XmlReader<'_> {
         if !unadjusted.is_empty() {
             warnings.push(format!(
                 "photos that the aerotriangulation left out (component 0) are left out: {} ({})",
-                few(&unadjusted),
+                listed(&unadjusted),
                 self.path
             ));
         } else if !is_mixed && !found.is_empty() {

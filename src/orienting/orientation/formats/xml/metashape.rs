@@ -14,8 +14,8 @@ use nalgebra::{Matrix3, Matrix4, Point3, Vector3};
 use roxmltree::{Document, Node};
 
 use super::{Sensor, XmlReader, child, parse};
-use crate::base::error::{Error, Result};
-use crate::orienting::orientation::formats::left_out::{LeftOut, few};
+use crate::base::error::{Error, Result, listed};
+use crate::orienting::orientation::formats::left_out::LeftOut;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 use crate::photographs::camera::{Distortion, Projection};
 
@@ -177,40 +177,40 @@ impl<'a, 'b, 'c> Chunk<'a, 'b, 'c> {
                 unknown.push(label);
                 continue;
             }
-            let (world, unplaced) = self.frame_of(node)?;
-            let pose = world * Matrix4::from_row_slice(&self.file.numbers::<16>(transform)?);
-            let turned = pose.fixed_view::<3, 3>(0, 0).into_owned();
-            let mut r = (turned / turned.column(0).norm()).transpose();
-            let mut center = Point3::new(pose[(0, 3)], pose[(1, 3)], pose[(2, 3)]);
-            if let (None, Some((master_from_slave, location))) = (own, offset) {
-                center += r.transpose() * location;
-                r = master_from_slave.transpose() * r;
-                slaves += 1;
-            }
-            let orientation = Orientation {
-                distortion: lens.distortion,
-                size: Some(lens.size),
-                ..pinhole(label, &self.file.place(node), lens.k, r, center)
-            };
-            posed.push((orientation, unplaced));
+            let from_master = offset.filter(|_| own.is_none());
+            slaves += usize::from(from_master.is_some());
+            posed.push(self.posed(node, transform, from_master, lens)?);
         }
-        let mut warn = |what: &str| warnings.push(format!("{what} ({})", self.place()));
-        if !disabled.is_empty() {
-            let names = few(&disabled);
-            warn(&format!("disabled cameras are left out: {names}"));
-        }
-        if !unknown.is_empty() {
-            let names = few(&unknown);
-            warn(&format!(
-                "cameras of a rig are left out, since their sensors state no rotation and location towards the master: {names}"
-            ));
-        }
-        if slaves > 0 {
-            warn(&format!(
-                "{slaves} cameras of a rig stand at their masters, with the offset of their sensors"
-            ));
-        }
+        let said = words_of_cameras(&disabled, &unknown, slaves);
+        let place = self.place();
+        warnings.extend(said.into_iter().map(|what| format!("{what} ({place})")));
         Ok(self.in_one_frame(posed, warnings))
+    }
+
+    /// A camera with its transform, or that of its master and the offset from there.
+    fn posed(
+        &self,
+        node: Node<'a, 'b>,
+        transform: Node,
+        from_master: Option<(Matrix3<f64>, Vector3<f64>)>,
+        lens: &Sensor,
+    ) -> Result<Posed<'a>> {
+        let label = node.attribute("label").unwrap_or_default();
+        let (world, unplaced) = self.frame_of(node)?;
+        let pose = world * Matrix4::from_row_slice(&self.file.numbers::<16>(transform)?);
+        let turned = pose.fixed_view::<3, 3>(0, 0).into_owned();
+        let mut r = (turned / turned.column(0).norm()).transpose();
+        let mut center = Point3::new(pose[(0, 3)], pose[(1, 3)], pose[(2, 3)]);
+        if let Some((master_from_slave, location)) = from_master {
+            center += r.transpose() * location;
+            r = master_from_slave.transpose() * r;
+        }
+        let orientation = Orientation {
+            distortion: lens.distortion,
+            size: Some(lens.size),
+            ..pinhole(label, &self.file.place(node), lens.k, r, center)
+        };
+        Ok((orientation, unplaced))
     }
 
     fn place(&self) -> String {
@@ -272,7 +272,7 @@ impl<'a, 'b, 'c> Chunk<'a, 'b, 'c> {
         if !others.is_empty() {
             warnings.push(format!(
                 "cameras of a component that is not placed together with the others are left out: {} ({place})",
-                few(&others)
+                listed(&others)
             ));
         }
         if kept.is_some() {
@@ -285,6 +285,45 @@ impl<'a, 'b, 'c> Chunk<'a, 'b, 'c> {
     }
 }
 
+/// What is to be said of cameras that are disabled, of those of a rig whose offset is unknown, and
+/// of those of a rig that are placed by it.
+fn words_of_cameras(disabled: &[&str], unknown: &[&str], slaves: usize) -> Vec<String> {
+    let mut said = Vec::new();
+    if !disabled.is_empty() {
+        let names = listed(disabled);
+        said.push(format!("disabled cameras are left out: {names}"));
+    }
+    if !unknown.is_empty() {
+        let names = listed(unknown);
+        said.push(format!(
+            "cameras of a rig are left out, since their sensors state no rotation and location towards the master: {names}"
+        ));
+    }
+    if slaves > 0 {
+        said.push(format!(
+            "{slaves} cameras of a rig stand at their masters, with the offset of their sensors"
+        ));
+    }
+    said
+}
+
+impl Sensor {
+    /// Of images of this size, where the sensor was calibrated at another resolution.
+    fn scale_to(&mut self, size: (u32, u32)) -> std::result::Result<(), String> {
+        let cross = |a: u32, b: u32| u64::from(a) * u64::from(b);
+        if cross(size.0, self.size.1) != cross(size.1, self.size.0) {
+            return Err(format!(
+                "its images have {} x {} pixels, but it was calibrated at {} x {}",
+                size.0, size.1, self.size.0, self.size.1
+            ));
+        }
+        let scale = f64::from(size.0) / f64::from(self.size.0);
+        self.k = Matrix3::from_diagonal(&Vector3::new(scale, scale, 1.0)) * self.k;
+        self.size = size;
+        Ok(())
+    }
+}
+
 impl XmlReader<'_> {
     fn sensor(&self, sensor: Node) -> Result<Sensor> {
         let calibrations = || sensor.children().filter(|n| n.has_tag_name("calibration"));
@@ -292,17 +331,7 @@ impl XmlReader<'_> {
         let calibration = adjusted
             .or_else(|| calibrations().next())
             .ok_or_else(|| self.error(sensor, "it has no calibration"))?;
-        let mut projection = Projection::Perspective;
-        for node in [sensor, calibration] {
-            projection = match node.attribute("type") {
-                None => projection,
-                Some("frame") => Projection::Perspective,
-                // Metashape's manual: r = theta, from version 2.3 on also r = 2 sin(theta / 2).
-                Some("fisheye" | "equidistant_fisheye") => Projection::Equidistant,
-                Some("equisolid_fisheye") => Projection::Equisolid,
-                Some(model) => return Err(self.unsupported_lens(node, model)),
-            };
-        }
+        let projection = self.projection([sensor, calibration])?;
         let size = |of: Node| {
             child(of, "resolution")
                 .map(|n| self.resolution(n))
@@ -343,20 +372,26 @@ impl XmlReader<'_> {
             size: lens_size,
         };
         if let Some(size) = of_images.filter(|&size| size != lens_size) {
-            // Calibrated at another resolution of the same sensor.
-            let cross = |a: u32, b: u32| u64::from(a) * u64::from(b);
-            if cross(size.0, lens_size.1) != cross(size.1, lens_size.0) {
-                let problem = format!(
-                    "its images have {} x {} pixels, but it was calibrated at {} x {}",
-                    size.0, size.1, lens_size.0, lens_size.1
-                );
-                return Err(self.refusal(sensor, &problem, "one shape of the image"));
-            }
-            let scale = f64::from(size.0) / w;
-            lens.k = Matrix3::from_diagonal(&Vector3::new(scale, scale, 1.0)) * lens.k;
-            lens.size = size;
+            lens.scale_to(size)
+                .map_err(|problem| self.refusal(sensor, &problem, "one shape of the image"))?;
         }
         Ok(lens)
+    }
+
+    /// What the last of these nodes that states one says.
+    fn projection(&self, nodes: [Node; 2]) -> Result<Projection> {
+        let mut projection = Projection::Perspective;
+        for node in nodes {
+            projection = match node.attribute("type") {
+                None => projection,
+                Some("frame") => Projection::Perspective,
+                // Metashape's manual: r = theta, from version 2.3 on also r = 2 sin(theta / 2).
+                Some("fisheye" | "equidistant_fisheye") => Projection::Equidistant,
+                Some("equisolid_fisheye") => Projection::Equisolid,
+                Some(model) => return Err(self.unsupported_lens(node, model)),
+            };
+        }
+        Ok(projection)
     }
 
     fn unsupported_lens(&self, node: Node, model: &str) -> Error {

@@ -266,15 +266,15 @@ impl<'a> Tiff<'a> {
 
 /// A sample of 8 or 16 bits.
 trait Sample: Copy + Default {
-    const BYTES: usize;
+    // What it takes in the file.
+    const BYTES: usize = size_of::<Self>();
+
     fn read(bytes: &[u8], big_endian: bool) -> Self;
     fn plus(self, other: Self) -> Self;
     fn inverted(self) -> Self;
 }
 
 impl Sample for u8 {
-    const BYTES: usize = 1;
-
     fn read(bytes: &[u8], _: bool) -> Self {
         bytes[0]
     }
@@ -289,8 +289,6 @@ impl Sample for u8 {
 }
 
 impl Sample for u16 {
-    const BYTES: usize = 2;
-
     fn read(bytes: &[u8], big_endian: bool) -> Self {
         let pair = [bytes[0], bytes[1]];
         match big_endian {

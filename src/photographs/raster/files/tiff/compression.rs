@@ -98,7 +98,8 @@ fn read(stream: impl Read, expected: usize) -> Result<Vec<u8>, String> {
 }
 
 fn lzw(data: &[u8], expected: usize) -> Result<Vec<u8>, String> {
-    const STEP: usize = 1 << 16;
+    // Memory is taken by so much at a time, as in [`read`].
+    const BLOCK_BYTES: usize = 1 << 16;
     if data.first() == Some(&0) && data.get(1).is_some_and(|b| b & 1 == 1) {
         return Err("LZW of the old style (before TIFF 6.0)".to_owned());
     }
@@ -106,7 +107,7 @@ fn lzw(data: &[u8], expected: usize) -> Result<Vec<u8>, String> {
     let (mut rest, mut out) = (data, Vec::new());
     while out.len() < expected {
         let start = out.len();
-        out.resize(expected.min(start + STEP), 0);
+        out.resize(expected.min(start + BLOCK_BYTES), 0);
         let step = decoder.decode_bytes(rest, &mut out[start..]);
         rest = rest.get(step.consumed_in..).unwrap_or_default();
         out.truncate(start + step.consumed_out);

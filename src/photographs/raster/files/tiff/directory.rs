@@ -6,6 +6,7 @@ use super::super::excerpt::Excerpt;
 
 /// The tags that are looked at.
 pub(crate) mod tags {
+    // TIFF 6.0 and its supplements, GeoTIFF, GDAL, DNG.
     pub(crate) const NEW_SUBFILE_TYPE: u16 = 254;
     pub(crate) const IMAGE_WIDTH: u16 = 256;
     pub(crate) const IMAGE_LENGTH: u16 = 257;

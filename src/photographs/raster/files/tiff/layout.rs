@@ -92,63 +92,37 @@ impl Layout {
             (problem, "copy or convert it again")
         };
         let number = |tag: u16, default: u64| directory.number(tag).unwrap_or(default);
-        let extent = |tag: u16| directory.number(tag).and_then(|v| u32::try_from(v).ok());
-        let size = extent(tags::IMAGE_WIDTH).zip(extent(tags::IMAGE_LENGTH));
-        let size = size.filter(|&(w, h)| w > 0 && h > 0);
-        let (width, height) = size.ok_or_else(|| missing("its width and height"))?;
-        let compression = Compression::new(number(tags::COMPRESSION, 1)).map_err(|name| {
-            unread(format!(
-                "its compression is {name}, which is not read in a TIFF"
-            ))
-        })?;
+        let (width, height) =
+            stated_size(directory).ok_or_else(|| missing("its width and height"))?;
+        let not_read =
+            |name: String| format!("its compression is {name}, which is not read in a TIFF");
+        let compression = Compression::new(number(tags::COMPRESSION, 1))
+            .map_err(|name| unread(not_read(name)))?;
         let bits = bits(directory).map_err(unread)?;
         let photometric = directory.number(tags::PHOTOMETRIC);
         let photometric = photometric.ok_or_else(|| missing("what its samples mean"))?;
+        let palette = || palette(directory).ok_or_else(|| missing("its table of colours"));
+        let is_jpeg = compression == Compression::Jpeg;
         let (colours, needed) = match photometric {
-            0 | 1 => (Colours::Grey, 1),
-            2 => (Colours::Rgb, 3),
-            3 if bits == 8 => {
-                let table = palette(directory).ok_or_else(|| missing("its table of colours"))?;
-                (Colours::Palette(table), 1)
-            }
-            3 => return Err(unread("its table of colours is one of 16 bits".to_owned())),
-            6 if compression == Compression::Jpeg => (Colours::YCbCr, 3),
-            6 => return Err(unread("its colours are YCbCr without JPEG".to_owned())),
-            5 => return Err(unread("its colours are those of a press (CMYK)".to_owned())),
-            8..=10 => return Err(unread("its colours are CIE Lab".to_owned())),
-            4 => return Err(unread("it is a mask, no photograph".to_owned())),
-            32803 | 34892 => return Err(unread("it is a camera's raw file".to_owned())),
-            other => return Err(unread(format!("its samples mean number {other}"))),
+            3 if bits == 8 => (Colours::Palette(palette()?), 1),
+            other => plain_colours(other, is_jpeg).map_err(unread)?,
         };
         let samples = usize::try_from(number(tags::SAMPLES_PER_PIXEL, 1)).unwrap_or(0);
         if samples < needed || samples > usize::from(u16::MAX) {
             return Err(missing("as many bands as its colours need"));
         }
-        if number(tags::FILL_ORDER, 1) != 1 {
-            return Err(unread(
-                "the bits of its bytes are in reverse order".to_owned(),
-            ));
-        }
-        if compression == Compression::Jpeg && bits != 8 {
-            return Err(unread(format!("it is compressed as JPEG of {bits} bits")));
-        }
-        let predictor = number(tags::PREDICTOR, 1);
-        let predicted = match (compression.has_predictor(), predictor) {
-            (false, _) | (true, 1) => false,
-            (true, 2) => true,
-            _ => return Err(unread(format!("its predictor is number {predictor}"))),
-        };
+        check_bits(directory, is_jpeg, bits).map_err(unread)?;
+        let predicted = is_predicted(directory, &compression).map_err(unread)?;
         let (used, bands) = used_bands(directory, &colours, needed, samples);
         let is_planar = number(tags::PLANAR_CONFIGURATION, 1) == 2 && samples > 1;
         let colours = match (colours, used) {
             (Colours::Grey, 3) => Colours::Rgb,
+            (Colours::YCbCr, _) if is_planar => {
+                let problem = "its bands Y, Cb and Cr stand by themselves";
+                return Err(unread(problem.to_owned()));
+            }
             (colours, _) => colours,
         };
-        if is_planar && colours == Colours::YCbCr {
-            return Err(unread(
-                "its bands Y, Cb and Cr stand by themselves".to_owned(),
-            ));
-        }
         let mut layout = Self {
             size: (width, height),
             orientation: u8::try_from(number(tags::ORIENTATION, 1)).unwrap_or(1),
@@ -260,15 +234,63 @@ impl Layout {
     }
 }
 
+fn stated_size(directory: &Directory) -> Option<(u32, u32)> {
+    let extent = |tag: u16| directory.number(tag).and_then(|v| u32::try_from(v).ok());
+    let size = extent(tags::IMAGE_WIDTH).zip(extent(tags::IMAGE_LENGTH));
+    size.filter(|&(w, h)| w > 0 && h > 0)
+}
+
+fn check_bits(directory: &Directory, is_jpeg: bool, bits: u8) -> std::result::Result<(), String> {
+    if directory.number(tags::FILL_ORDER).unwrap_or(1) != 1 {
+        return Err("the bits of its bytes are in reverse order".to_owned());
+    }
+    if is_jpeg && bits != 8 {
+        return Err(format!("it is compressed as JPEG of {bits} bits"));
+    }
+    Ok(())
+}
+
+/// Are samples stored as differences to the one before?
+fn is_predicted(
+    directory: &Directory,
+    compression: &Compression,
+) -> std::result::Result<bool, String> {
+    let predictor = directory.number(tags::PREDICTOR).unwrap_or(1);
+    match (compression.has_predictor(), predictor) {
+        (false, _) | (true, 1) => Ok(false),
+        (true, 2) => Ok(true),
+        _ => Err(format!("its predictor is number {predictor}")),
+    }
+}
+
+/// What the samples mean, and how many of them a pixel needs; or why that cannot be read. Numbers
+/// are those of the photometric interpretation (TIFF 6.0, section 8).
+fn plain_colours(photometric: u64, is_jpeg: bool) -> std::result::Result<(Colours, usize), String> {
+    Err(match photometric {
+        0 | 1 => return Ok((Colours::Grey, 1)),
+        2 => return Ok((Colours::Rgb, 3)),
+        6 if is_jpeg => return Ok((Colours::YCbCr, 3)),
+        3 => "its table of colours is one of 16 bits".to_owned(),
+        4 => "it is a mask, no photograph".to_owned(),
+        5 => "its colours are those of a press (CMYK)".to_owned(),
+        6 => "its colours are YCbCr without JPEG".to_owned(),
+        8..=10 => "its colours are CIE Lab".to_owned(),
+        32803 | 34892 => "it is a camera's raw file".to_owned(),
+        other => format!("its samples mean number {other}"),
+    })
+}
+
 /// Is it no reduced copy, and no mask?
 pub(super) fn is_full(directory: &Directory) -> bool {
-    const REDUCED: u64 = 1;
+    // Bits of the subfile's type (TIFF 6.0, section 8).
+    const REDUCED_COPY: u64 = 1;
     const MASK: u64 = 4;
-    directory.number(tags::NEW_SUBFILE_TYPE).unwrap_or(0) & (REDUCED | MASK) == 0
+    directory.number(tags::NEW_SUBFILE_TYPE).unwrap_or(0) & (REDUCED_COPY | MASK) == 0
 }
 
 /// Bits of a sample: 8 or 16, without sign.
 fn bits(directory: &Directory) -> std::result::Result<u8, String> {
+    // Formats of samples (TIFF 6.0, section 19).
     const UNSIGNED: u64 = 1;
     const SIGNED: u64 = 2;
     const UNDEFINED: u64 = 4;

@@ -39,6 +39,18 @@ enum Kind {
     Float,
 }
 
+impl Kind {
+    /// By the number of a sample's format (TIFF 6.0, section 19).
+    fn of(format: u64) -> Option<Self> {
+        match format {
+            1 => Some(Self::Unsigned),
+            2 => Some(Self::Signed),
+            3 => Some(Self::Float),
+            _ => None,
+        }
+    }
+}
+
 impl<'a> NumberRaster<'a> {
     /// Reads the first image of full resolution. `file` is for messages.
     pub(crate) fn read(file: &'a str, bytes: Excerpt<'a>) -> Result<Self> {
@@ -57,12 +69,8 @@ impl<'a> NumberRaster<'a> {
         if number(tags::SAMPLES_PER_PIXEL, 1) != 1 {
             return Err(unread("it has several bands, and heights are one"));
         }
-        let kind = match number(tags::SAMPLE_FORMAT, 1) {
-            1 => Kind::Unsigned,
-            2 => Kind::Signed,
-            3 => Kind::Float,
-            _ => return Err(unread("the kind of its numbers is not read")),
-        };
+        let kind = Kind::of(number(tags::SAMPLE_FORMAT, 1))
+            .ok_or_else(|| unread("the kind of its numbers is not read"))?;
         let bits = number(tags::BITS_PER_SAMPLE, 1);
         let bits = match (kind, bits) {
             (Kind::Float, 32 | 64) | (Kind::Unsigned | Kind::Signed, 8 | 16 | 32) => bits as u8,

@@ -1,30 +1,26 @@
 //! The plan of a scene: one orientation chosen, images and orientations assigned by name, all
 //! refusals collected.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod matching;
+mod views;
+
+use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
-use super::assignment::{
-    Ambiguity, ImageCandidate, LeftOut, PathName, assign, assign_in_order, factor_in_words,
-    resized, scale,
-};
+use super::assignment::{ImageCandidate, PathName};
 use super::candidate::{Choice, OrientationCandidate, choose, take_group};
-use super::checks::camera_checks;
 use super::input::LoadOptions;
 use super::known_files::kinds_of;
-use super::memory;
-use super::names::{images_called, listed, view_names};
+use super::names::images_called;
 use super::notices;
-use super::planned_view::{PlannedImage, PlannedView, planned_view};
-use super::region::RegionOfInterest;
-use crate::base::error::Error;
+use super::planned_view::{PlannedImage, PlannedView};
+use crate::base::error::{Error, listed};
 use crate::orienting::orientation::{
     Anchor, FileKind, InputFile, Orientation, OrientationSet, StatedReference, UnreadFormat,
     epsg_of, orientation_sets, to_metric_frame, unread_format,
 };
 use crate::orienting::scene::Survey;
-use crate::photographs::camera::Camera;
 use crate::photographs::raster::image_header;
 
 /// Everything about a scene but its pixels.
@@ -208,18 +204,24 @@ impl Plan {
         };
         OrientationCandidate::split(&mut self.candidates, index, &taken.groups);
         let mut orientations = taken.orientations;
-        if let Some(anchor) = to_metric_frame(&mut orientations) {
-            self.warnings.push(format!(
-                "the positions are places on the Earth; the model stands in metres east and north of {:.3} degrees of longitude, {:.3} \
-                 of latitude, heights above the ellipsoid",
-                anchor.lon_deg, anchor.lat_deg
-            ));
-            self.survey = Survey {
-                anchor: Some(anchor),
-                ..Survey::default()
-            };
-        }
+        self.count_in_metres(&mut orientations);
         Some(orientations)
+    }
+
+    /// Where the positions are places on the Earth the scene counts metres from one of them.
+    fn count_in_metres(&mut self, orientations: &mut [Orientation]) {
+        let Some(anchor) = to_metric_frame(orientations) else {
+            return;
+        };
+        self.warnings.push(format!(
+            "the positions are places on the Earth; the model stands in metres east and north of {:.3} degrees of longitude, {:.3} \
+             of latitude, heights above the ellipsoid",
+            anchor.lon_deg, anchor.lat_deg
+        ));
+        self.survey = Survey {
+            anchor: Some(anchor),
+            ..Survey::default()
+        };
     }
 
     /// EPSG code of the coordinates' system, or the place that they count from.
@@ -278,205 +280,6 @@ impl Plan {
         };
         self.images.iter().map(candidate).collect()
     }
-
-    /// Gives each image its orientation; what is left over is named.
-    fn match_orientations(
-        &mut self,
-        files: &[InputFile],
-        orientations: Vec<Orientation>,
-        selected: bool,
-    ) {
-        let candidates = self.image_candidates(files);
-        let mut found = assign(&orientations, &candidates);
-        let path = |i: usize| &*files[self.images[i].file].path;
-        let label = self.orientation.clone().unwrap_or("any file".to_owned());
-        let mut warnings = Vec::new();
-        let fits = !found.ambiguous.is_empty() || found.of_image.iter().any(Option::is_some);
-        if let (false, Some(order)) = (fits, assign_in_order(&orientations, &candidates)) {
-            let paths: Vec<&str> = (0..order.len()).map(path).collect();
-            let stated: Vec<&str> = order.iter().map(|&one| &*orientations[one].image).collect();
-            let pairs =
-                (paths.iter().zip(&stated)).map(|(path, name)| format!("{path} for {name}"));
-            warnings.push(format!(
-                "no image is called as {label} says; they were taken in the order of their names: {}",
-                listed(pairs)
-            ));
-            self.unless_agreed = Some(too_few_oriented(0, &paths, &stated, &label));
-            found.of_image = order.into_iter().map(Some).collect();
-        }
-        let unreadable =
-            (found.of_image.iter().zip(&self.images)).filter_map(|(of_image, image)| {
-                image.unreadable.clone().filter(|_| of_image.is_some())
-            });
-        let mut errors: Vec<Error> = unreadable.collect();
-        let unclear = found.ambiguous.iter();
-        errors.extend(unclear.map(|same| ambiguous(same, &orientations, &path)));
-        let without: Vec<&str> = (0..self.images.len())
-            .filter(|&i| found.of_image[i].is_none() && found.left_out[i].is_none())
-            .filter(|i| found.ambiguous.iter().all(|same| !same.images.contains(i)))
-            .map(path)
-            .collect();
-        let copies = found
-            .left_out
-            .iter()
-            .enumerate()
-            .filter_map(|(i, why)| match (*why)? {
-                LeftOut::For(taken) => Some(format!("{} ({} was taken)", path(i), path(taken))),
-                LeftOut::WithCopies => Some(path(i).to_owned()),
-            });
-        let copies: Vec<String> = copies.collect();
-        let mut used = vec![false; orientations.len()];
-        for one in found.of_image.iter().flatten() {
-            used[*one] = true;
-        }
-        let unused: Vec<&str> = (orientations.iter().zip(&used))
-            .filter(|(_, used)| !**used)
-            .map(|(o, _)| &*o.image)
-            .collect();
-        let oriented = used.iter().filter(|used| **used).count();
-        if oriented < 3 && errors.is_empty() && !without.is_empty() {
-            errors.push(too_few_oriented(oriented, &without, &unused, &label));
-        }
-        if !without.is_empty() {
-            warnings.push(format!(
-                "images without an orientation in {label}, left out: {}",
-                listed(without.iter())
-            ));
-        }
-        if !copies.is_empty() {
-            warnings.push(format!(
-                "masks or copies of images, left out because an orientation belongs to one image: {}",
-                listed(copies.iter())
-            ));
-        }
-        if !unused.is_empty() && !selected {
-            warnings.push(format!(
-                "orientations without an image, ignored: {}",
-                listed(unused.iter())
-            ));
-        }
-        self.warnings.extend(warnings);
-        self.errors.extend(errors);
-        for (image, one) in self.images.iter_mut().zip(found.of_image) {
-            image.orientation = one.map(|one| orientations[one].clone());
-        }
-    }
-
-    /// Forms views in the local frame and checks them together.
-    fn form_views(&mut self, files: &[InputFile], options: &LoadOptions, ground: Option<[f64; 2]>) {
-        let mut views = Vec::new();
-        let mut scaled: BTreeMap<String, Vec<&str>> = BTreeMap::new();
-        for image in &self.images {
-            let (Some(header), Some(orientation)) = (&image.header, &image.orientation) else {
-                continue;
-            };
-            let path = &*files[image.file].path;
-            let size = [header.width, header.height];
-            let stated = orientation.size.map(|(w, h)| [w, h]).filter(|&s| s != size);
-            let view = match stated.and_then(|stated| scale(stated, size)) {
-                Some(factors) => {
-                    let words = factor_in_words(factors[0]);
-                    scaled.entry(words).or_default().push(path);
-                    let orientation = &Orientation {
-                        size: None,
-                        ..resized(orientation, factors)
-                    };
-                    planned_view(path, image.file, header, orientation)
-                }
-                None => planned_view(path, image.file, header, orientation),
-            };
-            match view {
-                Ok(mut view) => {
-                    view.reduce(options.reduction.unwrap_or(1));
-                    views.push(view);
-                }
-                Err(error) => self.errors.push(error),
-            }
-        }
-        let paths: Vec<&str> = views.iter().map(|v| &*files[v.file].path).collect();
-        for (view, name) in views.iter_mut().zip(view_names(&paths)) {
-            view.name = name;
-        }
-        for (factor, paths) in scaled {
-            self.warnings.push(format!(
-                "images of {factor} the size that their orientation states, whose cameras were scaled: {}",
-                listed(paths.into_iter())
-            ));
-        }
-        if views.len() < 3 && self.errors.is_empty() {
-            self.errors.push(too_few(files, &views));
-        }
-        if views.len() < 3 {
-            self.views = views;
-            return;
-        }
-        self.warnings.extend(notice_of_fisheyes(&views));
-        self.warnings.extend(notice_of_reduction(options));
-        self.origin = camera_checks::scene_origin(views.iter().map(|v| &v.whole));
-        for view in &mut views {
-            view.whole.center -= self.origin;
-        }
-        let ground_z = options.ground_z.map(|z| z - self.origin.z);
-        let named: Vec<(&str, &Camera)> = views
-            .iter()
-            .map(|v| (&*files[v.file].path, &v.whole))
-            .collect();
-        let found = camera_checks::check_cameras(&named, ground_z);
-        self.is_implausible = self.errors.is_empty() && !found.errors.is_empty();
-        self.errors.extend(found.errors);
-        self.placement_warnings = found.warnings;
-        // A wrong orientation projects the region elsewhere: then it is cut after the correction,
-        // and after the images have decided about the angles, where there is memory for that.
-        let is_undecided = views.iter().all(|v| !v.readings.is_empty());
-        let whole_fits = || {
-            let bytes = memory::peak_bytes(files, &views);
-            memory::check_memory(bytes, &views, options.memory_mb).is_none()
-        };
-        self.is_cut_later = options.apply_fix || is_undecided && whole_fits();
-        let cut_now = !self.is_cut_later;
-        if let (Some(roi), Some(heights), true) = (options.roi, ground.or(found.heights), cut_now) {
-            let roi = RegionOfInterest::new(roi, &self.origin, heights);
-            match roi.and_then(|roi| roi.cut(files, &mut views, options.max_views)) {
-                Ok(cut) => {
-                    self.warnings.extend(cut.warnings);
-                    self.is_chosen = cut.is_chosen;
-                }
-                Err(error) => self.errors.push(error),
-            }
-        }
-        self.peak_bytes = memory::peak_bytes(files, &views);
-        let too_large = memory::check_memory(self.peak_bytes, &views, options.memory_mb);
-        self.is_implausible &= too_large.is_none();
-        self.errors.extend(too_large);
-        self.views = views;
-    }
-}
-
-/// By how much photographs are reduced.
-fn notice_of_reduction(options: &LoadOptions) -> Option<String> {
-    let factor = options.reduction.filter(|&factor| factor > 1)?;
-    Some(format!(
-        "photographs are used at {} of their width and height, as fine as roofs need (--reduce 1 \
-         uses them in full)",
-        match factor {
-            2 => "half".to_owned(),
-            3 => "a third".to_owned(),
-            4 => "a quarter".to_owned(),
-            more => format!("1/{more}"),
-        }
-    ))
-}
-
-/// What part of fisheye photographs is used.
-fn notice_of_fisheyes(views: &[PlannedView]) -> Option<String> {
-    let of_fisheye = (views.iter())
-        .filter(|v| v.distortion.is_some_and(|lens| lens.is_fisheye()))
-        .map(|v| v.whole.half_field_deg());
-    let widest = of_fisheye.reduce(f64::max)?;
-    Some(format!(
-        "fisheye photographs are rectified to pinholes: what lies more than {widest:.0} degrees from \
-         their axis is not used"
-    ))
 }
 
 fn no_orientation(
@@ -534,64 +337,7 @@ fn no_orientation(
 
 /// A mask, perhaps: a photograph in grey values alone is rarely a PNG.
 fn is_gray_png(bytes: &[u8]) -> bool {
+    // The byte that states it, behind signature, length, name, width, height and depth.
     const COLOUR_TYPE: usize = 25;
     bytes.starts_with(b"\x89PNG\r\n\x1a\n") && bytes.get(COLOUR_TYPE) == Some(&0)
-}
-
-fn ambiguous<'a>(
-    same: &Ambiguity,
-    orientations: &[Orientation],
-    path: &impl Fn(usize) -> &'a str,
-) -> Error {
-    let images: Vec<&str> = same.images.iter().map(|&i| path(i)).collect();
-    let sources = listed((same.orientations.iter()).map(|&i| &*orientations[i].source));
-    match images[..] {
-        [one] => Error::File {
-            file: one.to_owned(),
-            problem: format!("two orientations are called like the image ({sources})"),
-            advice: "remove one of them".to_owned(),
-        },
-        _ => Error::Scene {
-            problem: format!(
-                "{} have the same name, and nothing tells which of them belongs to {sources}",
-                images.join(" and ")
-            ),
-            advice: "rename or remove one, or give them the folders that the orientation states"
-                .to_owned(),
-        },
-    }
-}
-
-/// The refusal of images of which too few have an orientation.
-fn too_few_oriented(oriented: usize, without: &[&str], unused: &[&str], label: &str) -> Error {
-    let named = match unused.is_empty() {
-        true => String::new(),
-        false => format!(" (it names {})", listed(unused.iter())),
-    };
-    Error::Scene {
-        problem: format!(
-            "{oriented} {} an orientation in {label}, but three are needed: none for {}{named}",
-            if oriented == 1 {
-                "image has"
-            } else {
-                "images have"
-            },
-            listed(without.iter())
-        ),
-        advice: "add the orientation of the others, or give the images the names that it states"
-            .to_owned(),
-    }
-}
-
-fn too_few(files: &[InputFile], views: &[PlannedView]) -> Error {
-    Error::Scene {
-        problem: format!(
-            "{} oriented {} ({}), but three are needed",
-            views.len(),
-            if views.len() == 1 { "view" } else { "views" },
-            listed(views.iter().map(|v| files[v.file].name()))
-        ),
-        advice: "add images: a line match in two views cannot be verified without a third"
-            .to_owned(),
-    }
 }
