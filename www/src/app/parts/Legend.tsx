@@ -27,7 +27,7 @@ const ENTRIES: Partial<Record<Tab, readonly Entry[]>> = {
     ["set", "region; plane of regions"],
   ],
   groups: [
-    ["bar", "line found in a plane"],
+    ["border-inplane", "line found in a plane"],
     ["unmatched", "thin: no facet"],
   ],
   directions: [
@@ -46,7 +46,7 @@ const ENTRIES: Partial<Record<Tab, readonly Entry[]>> = {
   facets: [["normals", "hue: azimuth, saturation: slope"]],
   refinement: [
     ["grown", "outline before refinement"],
-    ["bar", "side in an adopted relation"],
+    ["border-inplane", "side in an adopted relation"],
     ["rejected", "rejected; gap in the outline"],
   ],
 };
