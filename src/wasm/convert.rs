@@ -36,6 +36,13 @@ pub(crate) fn named_error(name: &str, message: &str) -> JsValue {
     error.into()
 }
 
+/// Has what a panic says written to the console, where the worker finds it.
+pub(crate) fn write_panics() {
+    std::panic::set_hook(Box::new(|panic| {
+        web_sys::console::error_1(&panic.to_string().into());
+    }));
+}
+
 /// A plain JavaScript object, by way of JSON: the writer of it is there anyway.
 pub(crate) fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
     let text = serde_json::to_string(value).map_err(JsError::from)?;

@@ -2,14 +2,15 @@ import { describe, expect, it } from "vitest";
 import { failureOf } from "../../../src/worker/failures";
 
 const PANIC =
-  "panicked at src/planes/hypotheses/hypothesis.rs:41:9:\nindex out of bounds: the len is 9 but the index is 9\n\nStack:\n\nat x";
+  "panicked at src/planes/hypotheses/hypothesis.rs:41:9:\nindex out of bounds: the len is 9 but the index is 9";
 const trap = (words: string) => new WebAssembly.RuntimeError(words);
 
 describe("why a call failed", () => {
   it("is what the core said last, with its place, where it stopped", () => {
     expect(failureOf(trap("unreachable"), PANIC)).toEqual({
       kind: "crash",
-      message: "index out of bounds: the len is 9 but the index is 9 (src/planes/hypotheses/hypothesis.rs, line 41)",
+      message:
+        "index out of bounds: the len is 9 but the index is 9 (src/planes/hypotheses/hypothesis.rs, line 41)",
       orientationCheck: null,
     });
   });
