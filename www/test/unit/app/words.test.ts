@@ -72,7 +72,7 @@ describe("the words of the page", () => {
 });
 
 /** Folders of the core with texts for people; readers say theirs in `orientation` and `scene_loader`. */
-const OF_THE_CORE = ["cli", "pipeline", "orientation_check", "tiles"];
+const OF_THE_CORE = ["cli", "pipeline", "orienting/orientation_check", "tiles"];
 const CORE = new URL("../../../../src/", import.meta.url);
 
 /** String literals with a blank, and what the command line prints of its arguments. */
