@@ -4,7 +4,8 @@
 #   make demo       build, serve the page and print its address
 #   make test       set up, lint and run every test (native, wasm in Node, TypeScript, Chromium)
 #   make build      the static site in www/dist, for any static host
-#   make lint       format, counts that may only fall (tests/evaluation/economy.py), clippy (native and wasm32), Biome, TypeScript
+#   make lint       format, counts that may only fall (tests/evaluation/economy.py), unused dependencies, clippy (native and
+#                   wasm32), Biome, TypeScript
 #   make identical  the demo and the synthetic scenes natively and in wasm, compared byte for byte
 #   make golden     rewrite what the tests expect to be found in the synthetic scenes (tests/golden)
 #   make score      all scenes against their truth; writes docs/results.md

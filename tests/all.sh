@@ -68,6 +68,27 @@ clippy_wasm32() {
     cargo clippy --lib --no-default-features "${of_page[@]}" -- -D warnings && return $first
 }
 
+# Names dependencies that nothing uses: crates by their paths, packages by where they are imported or configured.
+all_dependencies_are_used() {
+    local name unused=0
+    for name in $(awk '/^\[/ { on = /dependencies\]$/; next } on && / = / { print $1 }' Cargo.toml); do
+        grep -rqE "\b${name//-/_}(::|!)" --include='*.rs' src tests benches examples && continue
+        echo "Cargo.toml: nothing uses $name"
+        unused=1
+    done
+    local packages='const p = require("./www/package.json"); console.log(Object.keys({ ...p.dependencies, ...p.devDependencies }).join(" "))'
+    for name in $(node -e "$packages"); do
+        # The compiler is called, the types belong to what they describe.
+        [ "$name" = typescript ] && continue
+        grep -rqE "[\"'/]${name#@types/}[\"'/:]" --include='*.ts' --include='*.tsx' --include='*.mjs' --include=biome.json \
+            --exclude-dir={node_modules,pkg,pkg-orient,dist} www tests && continue
+        echo "www/package.json: nothing uses $name"
+        unused=1
+    done
+    return $unused
+}
+
+step dependencies check all_dependencies_are_used
 step format check formatted
 step economy check "${PYTHON:-python3}" tests/evaluation/economy.py
 start clippy-wasm32 clippy_wasm32

@@ -26,45 +26,10 @@ impl JsonError {
     }
 }
 
-/// Parameters of older files that nothing reads any more, by the keys that lead to them.
-const RETIRED: [[&str; 3]; 17] = [
-    ["", "roof", "border_cost_m"],
-    ["", "roof", "half_plane_gain_m"],
-    ["", "roof", "min_real_ratio"],
-    ["", "roof", "min_correlation"],
-    ["roof", "refine", "edge_gain_m"],
-    ["roof", "refine", "min_correlation"],
-    ["roof", "refine", "part_gain_m"],
-    ["roof", "refine", "part_gain_share"],
-    ["roof", "refine", "border_cost_m"],
-    ["objectspace", "planes", "least_support"],
-    ["objectspace", "planes", "least_correlation"],
-    ["objectspace", "planes", "min_rise"],
-    ["objectspace", "planes", "least_rise"],
-    ["objectspace", "planes", "side_weight_m"],
-    ["objectspace", "planes", "plane_cost_m2"],
-    ["objectspace", "planes", "slant_cost_m2"],
-    ["objectspace", "planes", "min_measure_m2"],
-];
-
 /// Reads a value from text.
 pub(crate) fn read<T: DeserializeOwned>(text: &str) -> Result<T, JsonError> {
     // By way of a value, so that a problem is told by its keys and not by a column.
-    let mut value: serde_json::Value = serde_json::from_str(text).map_err(JsonError::Syntax)?;
-    // Parameters stand alone or in a project.
-    for params in ["", "/params"] {
-        for [part, group, name] in RETIRED {
-            let part = if part.is_empty() {
-                "".into()
-            } else {
-                format!("/{part}")
-            };
-            let group = value.pointer_mut(&format!("{params}{part}/{group}"));
-            if let Some(fields) = group.and_then(serde_json::Value::as_object_mut) {
-                fields.remove(name);
-            }
-        }
-    }
+    let value: serde_json::Value = serde_json::from_str(text).map_err(JsonError::Syntax)?;
     serde_path_to_error::deserialize(value).map_err(JsonError::Value)
 }
 
@@ -119,16 +84,6 @@ mod tests {
             Value::Number(n) => (n.as_f64().unwrap() + 0.5).into(),
             other => other.clone(),
         }
-    }
-
-    #[test]
-    fn what_older_files_state_and_nothing_reads_is_left_out() {
-        let text = r#"{"roof": {"min_real_ratio": 0.4, "min_area_m2": 2.5},
-            "objectspace": {"planes": {"min_measure_m2": 1}}}"#;
-        let mut expected = Params::default();
-        expected.roof.min_area_m2 = 2.5;
-        assert_eq!(read::<Params>(text).unwrap(), expected);
-        assert!(problem(r#"{"sweep": {"min_real_ratio": 0.4}}"#).contains("unknown field"));
     }
 
     #[test]

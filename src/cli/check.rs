@@ -62,7 +62,7 @@ fn of_run(run: &Run) -> Value {
         })
     });
     json!({
-        "doctor": scene.survey.agreement,
+        "agreement": scene.survey.agreement,
         "origin": scene.origin.as_slice(),
         "views": views.collect::<Vec<_>>(),
         "warnings": warnings(run),
@@ -74,7 +74,7 @@ fn of_refusal(error: &Error) -> Value {
         Error::Contradiction { report, .. } => Some(report),
         _ => None,
     };
-    json!({ "doctor": report, "refusal": error.to_string() })
+    json!({ "agreement": report, "refusal": error.to_string() })
 }
 
 /// The findings as text.

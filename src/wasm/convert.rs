@@ -6,7 +6,8 @@ use js_sys::{Function, Reflect, Uint8Array};
 use nalgebra::Matrix3x4;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use wasm_bindgen::{JsError, JsValue};
+use serde_wasm_bindgen::Serializer;
+use wasm_bindgen::JsValue;
 
 use super::memory::grow_ahead;
 use crate::base::error::Error;
@@ -36,10 +37,16 @@ pub(crate) fn named_error(name: &str, message: &str) -> JsValue {
     error.into()
 }
 
-/// A plain JavaScript object, by way of JSON: the writer of it is there anyway.
+/// Has what a panic says written to the console, where the worker finds it.
+pub(crate) fn write_panics() {
+    std::panic::set_hook(Box::new(|panic| {
+        web_sys::console::error_1(&panic.to_string().into());
+    }));
+}
+
+/// A plain JavaScript object, as JSON would give it.
 pub(crate) fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
-    let text = serde_json::to_string(value).map_err(JsError::from)?;
-    js_sys::JSON::parse(&text)
+    Ok(value.serialize(&Serializer::json_compatible())?)
 }
 
 /// A Rust value from a plain JavaScript object; `what` names it in the message. By way of JSON, so

@@ -11,6 +11,7 @@ use wasm_bindgen::prelude::*;
 
 use super::convert::{
     ViewInfo, foreign, from_js, input_error, listener_of, merge_all, named_error, to_js,
+    write_panics,
 };
 use crate::base::execution::{MergedShards, with_listener};
 use crate::orienting::orientation::InputFile;
@@ -107,7 +108,7 @@ impl Orienter {
     pub fn new(
         #[wasm_bindgen(unchecked_param_type = "OrientOptions")] options: JsValue,
     ) -> Result<Self, JsValue> {
-        console_error_panic_hook::set_once();
+        write_panics();
         let options: Option<JsOrientOptions> = from_js(&options, "options of the orientation")?;
         let options = options.unwrap_or_default();
         let defaults = FeatureOptions::default();

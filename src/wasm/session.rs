@@ -4,7 +4,9 @@ use js_sys::Function;
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
-use super::convert::{ViewInfo, from_js, input_error, listener_of, named_error, to_js};
+use super::convert::{
+    ViewInfo, from_js, input_error, listener_of, named_error, to_js, write_panics,
+};
 use crate::base::execution::MergedShards;
 use crate::base::params::Params;
 use crate::orienting::orientation::{InputFile, PhotographHead};
@@ -126,7 +128,7 @@ impl Session {
     /// An empty session with the default parameters.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
-        console_error_panic_hook::set_once();
+        write_panics();
         Self::default()
     }
 

@@ -598,7 +598,7 @@ fn a_check_says_what_the_images_say() {
     );
     let json = check(&scene, &["--json"]).stdout;
     let found: serde_json::Value = serde_json::from_slice(&json).unwrap();
-    assert_eq!(found["doctor"]["finding"], "sound");
+    assert_eq!(found["agreement"]["finding"], "sound");
     let adjustment = |more: &[&str]| {
         let found = check(&scene, more).stdout;
         let found: serde_json::Value = serde_json::from_slice(&found).unwrap();
@@ -629,6 +629,6 @@ fn a_check_says_what_the_images_say() {
     let refused = check(&broken, &["--json"]);
     assert_eq!(refused.status.code(), Some(2));
     let found: serde_json::Value = serde_json::from_slice(&refused.stdout).unwrap();
-    assert_eq!(found["doctor"]["finding"], "explained");
+    assert_eq!(found["agreement"]["finding"], "explained");
     assert!(found["refusal"].as_str().unwrap().contains("kappa in gon"));
 }

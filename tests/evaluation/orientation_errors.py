@@ -178,7 +178,7 @@ def check(binary, scene, broken):
         if done.returncode not in (0, 2):
             return f'failed: {done.stderr}', '-'
         found = json.loads(done.stdout)
-        report = found['doctor'] or {}
+        report = found['agreement'] or {}
         scores = [report.get('stated'), report.get('cured')]
         score = ' → '.join(f"{s['score']:.2f}" for s in scores if s)
         if report.get('offsets_px'):

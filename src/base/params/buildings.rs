@@ -58,7 +58,6 @@ pub struct RefineParams {
     /// Distances beyond this count as this in the reprojection error, px.
     pub cap_px: f64,
     /// Least number of measured edges in a building. Assumption: two sides in three views.
-    #[serde(alias = "min_sightings")]
     pub min_observations: usize,
     /// Most unknowns of a building; larger ones keep their shape. Assumption: seconds of one core.
     pub max_unknowns: usize,

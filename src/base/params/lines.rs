@@ -11,8 +11,6 @@ pub struct SegmentParams {
     pub edgels: EdgelParams,
     /// Edges between colours, the second source of segments.
     pub colors: ColorParams,
-    /// Thin lines, the third source of segments.
-    pub bars: BarParams,
     /// Shortest segment, px. B99 3.2: "above a minimum length (here 15 pixels)".
     pub min_length_px: f64,
     /// Edgels in each of the worm's two arms. Assumption: a third of the shortest segment.
@@ -63,7 +61,6 @@ impl Default for SegmentParams {
         Self {
             edgels: EdgelParams::default(),
             colors: ColorParams::default(),
-            bars: BarParams::default(),
             min_length_px: 15.0,
             worm_arm_edgels: 5,
             worm_bend_deg: 20.0,
@@ -129,36 +126,6 @@ impl Default for ColorParams {
         Self {
             detect: true,
             clear_px: 2.0,
-        }
-    }
-}
-
-/// B99 5: bars. Thresholds are multiples of the local scale of the second derivative.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-pub struct BarParams {
-    /// Detect bars at all? Assumption: no. Nearly all of them run beside edges that are matched
-    /// already (docs/results.md, "Bars"); they are for photographs on which a ridge or a gutter is
-    /// thinner than what edges need on either side.
-    pub detect: bool,
-    /// Least second derivative of a point of a bar. Assumption: above the response of roof tiles.
-    pub low: f64,
-    /// Least second derivative of the strongest point in a chain. Assumption.
-    pub high: f64,
-    /// A bar is rejected that has an edge segment this near along half of it, px. Assumption: the
-    /// edges of its two sides, which smoothing pushes apart. At 2 px every tenth line is a second
-    /// one beside an edge.
-    pub clear_px: f64,
-}
-
-impl Default for BarParams {
-    fn default() -> Self {
-        Self {
-            detect: false,
-            low: 2.5,
-            high: 3.5,
-            clear_px: 4.0,
         }
     }
 }

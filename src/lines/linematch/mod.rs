@@ -17,10 +17,10 @@
 //! ```
 //!
 //! Pairs and triples are of segments of one kind (steps in grey values or in the red-blue
-//! difference, bright or dark bars) with the same bright side, if they are steps: that keeps
-//! mismatches rare. Where the scene has no more than `min_views` views, a second pass matches the
-//! remaining segments without either condition: of three views two may show an eave before a
-//! sunlit lawn, and the third before the shadow of the house.
+//! difference) with the same bright side: that keeps mismatches rare. Where the scene has no more
+//! than `min_views` views, a second pass matches the remaining segments without either condition:
+//! of three views two may show an eave before a sunlit lawn, and the third before the shadow of the
+//! house.
 //!
 //! Invariant: a segment belongs to at most one line. The result does not depend on the order of the
 //! hypotheses.

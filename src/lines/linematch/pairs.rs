@@ -223,7 +223,7 @@ impl PairGeometry {
         let length = (a1 - a0).norm();
         let direction = (a1 - a0) / length.max(1e-9);
         let (t0, t1) = ((b0 - a0).dot(&direction), (b1 - a0).dot(&direction));
-        if scope.compatibility.is_directed(a.kind) && t1 <= t0 {
+        if scope.compatibility.contrast && t1 <= t0 {
             return None;
         }
         let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(length));

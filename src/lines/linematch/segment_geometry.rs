@@ -22,9 +22,9 @@ pub struct SegmentRef {
 /// The properties in which all segments of a line must agree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Compatibility {
-    /// The bright side, for steps.
+    /// The bright side.
     pub contrast: bool,
-    /// The kind. Without this condition a step is still no bar, which runs beside the line's edges.
+    /// The kind.
     pub kind: bool,
 }
 
@@ -37,12 +37,7 @@ impl Compatibility {
 
     /// May segments of these kinds show one line?
     pub(super) fn allows(self, a: SegmentKind, b: SegmentKind) -> bool {
-        a == b || (!self.kind && a.is_step() == b.is_step())
-    }
-
-    /// Must a segment of this kind run the same way as the others?
-    pub(super) fn is_directed(self, kind: SegmentKind) -> bool {
-        self.contrast && kind.is_step()
+        a == b || !self.kind
     }
 }
 
@@ -50,7 +45,7 @@ impl Compatibility {
 pub(super) struct SegmentGeometry {
     /// The segment, directed by contrast.
     pub segment: Segment2,
-    /// Step or bar, and in which channel.
+    /// In which channel it shows.
     pub kind: SegmentKind,
     /// Its length, pixels.
     pub length_px: f64,
@@ -181,33 +176,4 @@ pub(super) fn ray_in_plane(
     let slope = plane.normal.dot(ray);
     let depth = -plane.signed_distance(center) / slope;
     (slope.abs() > 1e-9 && depth > 0.0).then(|| center + ray * depth)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use SegmentKind::{BrightBar, Color, DarkBar, Edge};
-
-    #[test]
-    fn bars_and_steps_are_never_compatible() {
-        let first = Compatibility {
-            contrast: true,
-            kind: true,
-        };
-        let second = Compatibility {
-            contrast: false,
-            kind: false,
-        };
-        for a in SegmentKind::ALL {
-            assert!(first.allows(a, a) && second.allows(a, a));
-            assert!(!first.allows(a, a.other()) && second.allows(a, a.other()));
-            assert_eq!(a.other().other(), a);
-            assert!(!second.is_directed(a));
-        }
-        assert!(!second.allows(Edge, BrightBar) && !second.allows(DarkBar, Color));
-        assert_eq!(
-            [Edge, Color, BrightBar, DarkBar].map(|k| first.is_directed(k)),
-            [true, true, false, false]
-        );
-    }
 }

@@ -1,8 +1,7 @@
 use super::*;
-use crate::base::geometry::Segment2;
 use crate::base::ids::SegmentId;
 use crate::lines::lines2d::SegmentKind;
-use crate::lines::lines3d::{Line3d, SupportKind, planted, reconstruct_lines};
+use crate::lines::lines3d::{SupportKind, planted, reconstruct_lines};
 
 fn matched() -> (Scene, Vec<LineTrack>, MatchTrace) {
     let scene = planted::scene();
@@ -112,55 +111,6 @@ fn where_views_are_few_they_may_show_a_line_in_different_channels() {
     };
     assert_eq!(matched(4), (Some(3), 3));
     assert_eq!(matched(2), (None, 0), "three views are not few then");
-}
-
-/// The lines along a planted bar, of which each view shows one segment of this kind, every other
-/// one reversed.
-fn lines_of_a_bar(kinds: [SegmentKind; 5]) -> Vec<Line3d> {
-    let scene = planted::scene_with_bar();
-    let image = |(view, kind): (usize, SegmentKind)| {
-        let camera = &scene.views[view].camera;
-        let [start, end] = [0.05, 0.95].map(|t| camera.project(&planted::bar().at(t)).unwrap());
-        let along = Segment2::new(start, end);
-        let segment = if view.is_multiple_of(2) {
-            along
-        } else {
-            along.reversed()
-        };
-        vec![ImageSegment {
-            kind,
-            ..planted::detected(segment, view)
-        }]
-    };
-    let segments: Vec<_> = kinds.into_iter().enumerate().map(image).collect();
-    let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
-    let (matches, _) = match_lines(&scene, &segments, &params, &fitting).unwrap();
-    reconstruct_lines(&scene, &matches, &fitting).0
-}
-
-#[test]
-fn bars_are_matched_with_bars_whichever_way_they_run() {
-    let lines = lines_of_a_bar([SegmentKind::BrightBar; 5]);
-    assert_eq!(lines.len(), 1);
-    for end in [lines[0].segment.p0, lines[0].segment.p1] {
-        let miss = planted::bar().line_distance(&end);
-        assert!(miss < 0.05, "{miss} m: half a pixel beside its middle");
-    }
-    assert!(lines[0].segment.length() > 7.0, "of eight metres");
-    // As steps only those that run the same way match, at a side of the bar; there are no dark
-    // bars.
-    let steps = lines_of_a_bar([SegmentKind::Edge; 5]);
-    let beside = |l: &Line3d| planted::bar().line_distance(&l.at(0.5)) > 0.08;
-    assert!(steps.iter().all(beside));
-    assert!(lines_of_a_bar([SegmentKind::DarkBar; 5]).is_empty());
-    // Where three views show its sides, the other two determine the bar, and its middle is
-    // measured in all.
-    let mut kinds = [SegmentKind::BrightBar; 5];
-    (kinds[0], kinds[1], kinds[4]) = (SegmentKind::Edge, SegmentKind::Edge, SegmentKind::Edge);
-    let lines = lines_of_a_bar(kinds);
-    let in_the_middle: Vec<_> = lines.iter().filter(|l| !beside(l)).collect();
-    assert_eq!(in_the_middle.len(), 1);
-    assert_eq!(in_the_middle[0].supports.len(), 5);
 }
 
 #[test]

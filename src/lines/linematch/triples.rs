@@ -158,7 +158,7 @@ impl TransferredLine {
     fn agrees(&self, geometry: &SegmentGeometry, reach: f64, scope: &PairScope) -> bool {
         let ends = [geometry.segment.p0, geometry.segment.p1];
         let [t0, t1] = ends.map(|p| self.image.t_of(&p));
-        if scope.compatibility.is_directed(geometry.kind) && t1 <= t0 {
+        if scope.compatibility.contrast && t1 <= t0 {
             return false;
         }
         let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(self.length));

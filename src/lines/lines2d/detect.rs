@@ -24,7 +24,7 @@
 
 use nalgebra::{Matrix2, Point2};
 
-use super::edgels::{Fan, Gradient, Hessian, bar_points, fan_edgels, suppress};
+use super::edgels::{Gradient, suppress};
 use super::grow::GrownLine;
 use super::overlap::add_without_overlap;
 use super::refine::refine;
@@ -36,8 +36,7 @@ use crate::base::params::SegmentParams;
 use crate::photographs::raster::{Gray, RedBlueDifference, gaussian_blur};
 
 /// The straight segments of an image, directed by contrast: edges in grey values first, then in
-/// colour, then bars. `gray` and `red_blue` are of one size; a photograph without colour has no
-/// `red_blue`.
+/// colour. `gray` and `red_blue` are of one size; a photograph without colour has no `red_blue`.
 pub fn detect_segments(
     gray: &Gray,
     red_blue: Option<&RedBlueDifference>,
@@ -51,10 +50,6 @@ pub fn detect_segments(
     {
         let found = color_segments(red_blue, params, &mut trace);
         add_without_overlap(&mut segments, found, params.colors.clear_px, &mut trace);
-    }
-    if params.bars.detect {
-        let found = bar_segments(gray, &smooth, params, &mut trace);
-        add_without_overlap(&mut segments, found, params.bars.clear_px, &mut trace);
     }
     (segments, trace)
 }
@@ -86,7 +81,7 @@ fn edge_segments(
     let local = gradient.statistics();
     let noise_row = |y: usize, row: &mut [f32]| local.noise_row(y, row);
     let edgels = suppress(&gradient, &noise_row, params.edgels.low);
-    significant_lines(&edgels, &local, params.edgels.high, params, trace)
+    significant_lines(&edgels, &local, params, trace)
         .into_iter()
         .map(|mut line| {
             let noise = refine(
@@ -103,28 +98,6 @@ fn edge_segments(
         .collect()
 }
 
-/// Segments on thin lines.
-fn bar_segments(
-    gray: &Gray,
-    smooth: &Gray,
-    params: &SegmentParams,
-    trace: &mut SegmentTrace,
-) -> Vec<ImageSegment> {
-    let hessian = Hessian::new(smooth);
-    let local = hessian.statistics();
-    let points = bar_points(smooth, &hessian, &local, params.bars.low);
-    let mut segments = Vec::new();
-    for kind in [SegmentKind::BrightBar, SegmentKind::DarkBar] {
-        for fan in [Fan::Right, Fan::Down] {
-            let edgels = fan_edgels(&points, kind == SegmentKind::BrightBar, fan);
-            let lines = significant_lines(&edgels, &local, params.bars.high, params, trace);
-            let own = lines.iter().filter(|l| fan.contains(&l.line.normal()));
-            segments.extend(own.map(|line| finish(line, kind, gray, params)));
-        }
-    }
-    segments
-}
-
 fn finish(
     grown: &GrownLine,
     kind: SegmentKind,
@@ -132,20 +105,13 @@ fn finish(
     params: &SegmentParams,
 ) -> ImageSegment {
     let line = &grown.line;
-    let mut segment = grown.extent();
-    let mut contrast = contrast(gray, &segment, params.contrast_distance_px);
-    if kind.is_step() {
-        contrast = contrast.max(0.0);
-    } else if contrast < 0.0 {
-        segment = Segment2::new(segment.p1, segment.p0);
-        contrast = -contrast;
-    }
+    let segment = grown.extent();
     ImageSegment {
         kind,
-        segment,
-        contrast,
+        contrast: contrast(gray, &segment, params.contrast_distance_px).max(0.0),
         edgels: u32::try_from(line.count).expect("fewer than 2^32 edgels"),
         covariance: covariance(grown, &segment, params),
+        segment,
     }
 }
 
@@ -495,53 +461,6 @@ mod tests {
             assert!((s.segment.length() - 40.0).abs() < 5.0);
         }
         assert!(trace.worm_breaks.len() >= 3);
-    }
-
-    /// A bar of this contrast and width sqrt(2 pi) times 0.9 px through the middle of an image.
-    fn bar(angle: f64, contrast: f64) -> Gray {
-        let empty = Gray::new(90, 90);
-        let mut gray = Gray::from_fn(90, 90, |x, y| {
-            let p = Point2::new(x as f64 + 0.5, y as f64 + 0.5);
-            let d = distance_to_edge(&empty, angle, &p) / 0.9;
-            (0.5 + contrast * crate::base::math::exp(-0.5 * d * d)) as f32
-        });
-        add_noise(&mut gray, 2.0 / 255.0, 5);
-        gray
-    }
-
-    #[test]
-    fn a_thin_line_is_a_bar_along_its_middle() {
-        let mut params = SegmentParams::default();
-        params.bars.detect = true;
-        // Its two sides are edges, along which it would be rejected.
-        params.bars.clear_px = 0.0;
-        for step in 0..12 {
-            let angle = f64::from(step) * 15f64.to_radians() + 0.02;
-            for (contrast, kind) in [(0.2, SegmentKind::BrightBar), (-0.2, SegmentKind::DarkBar)] {
-                let gray = bar(angle, contrast);
-                let (segments, _) = detect_in_grey(&gray, &params);
-                let miss = |s: &ImageSegment| distance_to_edge(&gray, angle, &s.segment.midpoint());
-                let found = |s: &&ImageSegment| s.kind == kind && miss(s).abs() < 0.1;
-                let found: Vec<_> = segments.iter().filter(found).collect();
-                assert_eq!(found.len(), 1, "at {angle}");
-                assert!(found[0].segment.length() > 60.0);
-            }
-        }
-    }
-
-    #[test]
-    fn a_bar_between_two_edges_is_refused() {
-        let mut params = SegmentParams::default();
-        params.bars.detect = true;
-        let gray = bar(0.4, 0.2);
-        let (segments, trace) = detect_in_grey(&gray, &params);
-        assert!(trace.beside_edge > 0);
-        let in_the_middle = |s: &ImageSegment| {
-            s.kind == SegmentKind::BrightBar
-                && s.segment.length() > 40.0
-                && distance_to_edge(&gray, 0.4, &s.segment.midpoint()).abs() < 0.5
-        };
-        assert!(!segments.iter().any(in_the_middle));
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! Straight image segments (B99 3.2, "Implementation details").
 //!
 //! ```text
-//! edgels         edges and bars as edgels with local noise, linked into chains, broken at bends
+//! edgels         edges as edgels with local noise, linked into chains, broken at bends
 //!    -> regression     straight pieces by orthogonal regression, tight threshold, covariance
 //!    -> grow     pieces grown along their line through the edgels ahead
 //!    -> significant_lines    length, curvature and significance (significance) decide
 //!    -> refine   lines moved to the steepest place of the unsmoothed edge
-//!    -> detect   the stage: edges in grey values, in the red-blue difference, and bars
-//!    -> overlap  colour edges and bars along an edge in grey values are rejected
+//!    -> detect   the stage: edges in grey values and in the red-blue difference
+//!    -> overlap  colour edges along an edge in grey values are rejected
 //!
 //! segment        a segment: kind, end points, contrast, covariance
 //! guided         an edge measured again along the line that other views predict

@@ -1,4 +1,4 @@
-//! Colour edges and bars are rejected where an edge in grey values runs along them.
+//! Colour edges are rejected where an edge in grey values runs along them.
 
 use nalgebra::{Point2, Vector2};
 

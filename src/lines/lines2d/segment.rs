@@ -15,38 +15,26 @@ pub enum SegmentKind {
     Edge,
     /// A step between two colours that differ little in grey value.
     Color,
-    /// A thin line brighter than both its sides.
-    BrightBar,
-    /// A thin line darker than both its sides.
-    DarkBar,
 }
 
 impl SegmentKind {
     /// All kinds.
-    pub const ALL: [Self; 4] = [Self::Edge, Self::Color, Self::BrightBar, Self::DarkBar];
+    pub const ALL: [Self; 2] = [Self::Edge, Self::Color];
 
     /// The channel that shows such a segment.
     pub fn channel(self) -> Channel {
         match self {
             Self::Color => Channel::RedBlue,
-            Self::Edge | Self::BrightBar | Self::DarkBar => Channel::Grey,
+            Self::Edge => Channel::Grey,
         }
     }
 
-    /// Is it a step, which has a brighter side? A bar has none.
-    pub fn is_step(self) -> bool {
-        matches!(self, Self::Edge | Self::Color)
-    }
-
     /// The kind that another view may show in the same place: an eave may stand out in colour
-    /// alone, and a gutter be dark in one strip and bright in the other. A step and a bar are
-    /// never in the same place.
+    /// alone.
     pub fn other(self) -> Self {
         match self {
             Self::Edge => Self::Color,
             Self::Color => Self::Edge,
-            Self::BrightBar => Self::DarkBar,
-            Self::DarkBar => Self::BrightBar,
         }
     }
 }
@@ -56,8 +44,7 @@ impl SegmentKind {
 /// right of the direction as seen on the screen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImageSegment {
-    /// Edge in grey values or in colour, or bar. A bar runs along its middle; its direction
-    /// follows the small difference between its sides and is ignored by matching.
+    /// Edge in grey values or in colour.
     pub kind: SegmentKind,
     /// End points, pixels.
     pub segment: Segment2,

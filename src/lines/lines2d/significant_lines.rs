@@ -1,7 +1,7 @@
 //! From edgels to the significant straight lines among them.
 //!
-//! Edges and bars take the same steps: chains, straight pieces, growth along the line, and then
-//! the tests of length, curvature and significance.
+//! Chains, straight pieces, growth along the line, and then the tests of length, curvature and
+//! significance.
 
 use nalgebra::Point2;
 
@@ -13,17 +13,15 @@ use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
 use crate::base::geometry::Segment2;
 use crate::base::params::SegmentParams;
 
-/// The lines of some edgels, those of the longest pieces first. `high` is the least strength of
-/// the strongest edgel of a chain, in local noise units.
+/// The lines of some edgels, those of the longest pieces first.
 pub(super) fn significant_lines(
     edgels: &[Edgel],
     local: &LocalStrengths,
-    high: f64,
     params: &SegmentParams,
     trace: &mut SegmentTrace,
 ) -> Vec<GrownLine> {
     let raster = Raster::new(edgels);
-    let chains = link_on(edgels, &raster, high);
+    let chains = link_on(edgels, &raster, params.edgels.high);
     let mut seeds: Vec<Vec<u32>> = chains
         .iter()
         .flat_map(|chain| seeds_of(chain, edgels, params, trace))

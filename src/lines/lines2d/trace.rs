@@ -15,7 +15,7 @@ pub enum SegmentRejection {
     Curved,
     /// Not distinguishable from the texture around it.
     NotSignificant,
-    /// A bar along an edge that is a segment already.
+    /// A colour edge along an edge in grey values that is a segment already.
     BesideEdge,
 }
 
@@ -49,7 +49,7 @@ pub struct SegmentTrace {
     pub curved: usize,
     /// Lines that the texture around them explains.
     pub not_significant: usize,
-    /// Bars along an edge that is a segment already.
+    /// Colour edges along an edge in grey values that is a segment already.
     pub beside_edge: usize,
     /// The rejected lines of at least the minimum length.
     pub rejected: Vec<RejectedSegment>,

@@ -13,9 +13,6 @@ use crate::photographs::raster::Gray;
 pub(crate) const ROOF_Z: f64 = 6.0;
 /// Half the roof in x and y, metres.
 const HALF: [f64; 2] = [7.0, 5.0];
-/// Half the width of the bar and half its length, metres.
-const HALF_BAR: f64 = 0.1;
-const BAR_END: f64 = 4.0;
 /// Descent of the gable's slopes: 40 degrees.
 const SLOPE: f64 = 0.839;
 const SIZE: u32 = 300;
@@ -70,8 +67,6 @@ fn texture(x: f64, y: f64) -> f64 {
 enum Cover {
     /// A flat roof, [`edges`].
     Flat,
-    /// The same, darker, with a bright bar on it, [`bar`].
-    Bar,
     /// Two slopes down from [`ridge`].
     Gable,
 }
@@ -94,11 +89,7 @@ impl Cover {
             return Some(level + 0.3 * texture(p.x, p.y));
         }
         let p = camera.at_height(x, ROOF_Z).filter(inside)?;
-        match self {
-            Self::Bar if p.x.abs() <= HALF_BAR && p.y.abs() <= BAR_END => Some(1.0),
-            Self::Bar => Some(0.3 + 0.3 * texture(p.x, p.y)),
-            _ => Some(0.6 + 0.3 * texture(p.x, p.y)),
-        }
+        Some(0.6 + 0.3 * texture(p.x, p.y))
     }
 }
 
@@ -134,11 +125,6 @@ pub(crate) fn scene() -> Scene {
     scene_of(&POSITIONS, |camera| render(camera, Cover::Flat))
 }
 
-/// The same with a darker roof and on it a bright bar, [`bar`].
-pub(crate) fn scene_with_bar() -> Scene {
-    scene_of(&POSITIONS, |camera| render(camera, Cover::Bar))
-}
-
 /// A gable roof with baselines three times as long: views 0 and 1 of one strip, 2 of another one
 /// flown in the opposite direction.
 pub(crate) fn gable() -> Scene {
@@ -158,12 +144,6 @@ pub(crate) fn scene_without_photographs() -> Scene {
 /// Black photographs from these positions.
 pub(crate) fn views_from(places: &[(f64, f64, f64)]) -> Scene {
     scene_of(places, |_| Gray::new(SIZE as usize, SIZE as usize))
-}
-
-/// The bar's middle.
-pub(crate) fn bar() -> Segment3 {
-    let [start, end] = [-BAR_END, BAR_END].map(|y| Point3::new(0.0, y, ROOF_Z));
-    Segment3::new(start, end)
 }
 
 /// The ridge of the gable, the brighter slope to its right as seen from above.

@@ -12,8 +12,7 @@
 
 use std::io::{Cursor, Write};
 
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
 use zip::CompressionMethod;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
@@ -39,7 +38,6 @@ pub struct Project {
     /// Version of the program that wrote it.
     pub ridgeline: String,
     /// Choice of views, orientation, region...
-    #[serde(deserialize_with = "read_options")]
     pub options: LoadOptions,
     /// Parameters of the stages.
     pub params: Params,
@@ -136,16 +134,6 @@ pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Pro
     Ok((inputs, Some(project)))
 }
 
-/// Options, also as earlier versions wrote them: `adjust` stood among them, and what was on request
-/// then is the default now.
-fn read_options<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<LoadOptions, D::Error> {
-    let mut options = serde_json::Map::deserialize(deserializer)?;
-    options.remove("adjust");
-    LoadOptions::deserialize(Value::Object(options)).map_err(serde::de::Error::custom)
-}
-
 fn refuse(problem: &str) -> Error {
     Error::File {
         file: "the project".to_owned(),
@@ -233,22 +221,6 @@ mod tests {
         assert_eq!(opened(&project), b"{}");
         project.ridgeline = "0.0.1".to_owned();
         assert!(opened(&project).is_empty());
-    }
-
-    #[test]
-    fn options_of_earlier_versions_are_read() {
-        let of = |options: &str| {
-            let text = format!(r#"{{"ridgeline": "0.0.1", "options": {options}}}"#);
-            let file = InputFile::new("project.json", text.into_bytes());
-            open_project(vec![file]).map(|(_, project)| project.unwrap().options)
-        };
-        let options = of(r#"{"adjust": false, "apply_fix": true}"#).unwrap();
-        let expected = LoadOptions {
-            apply_fix: true,
-            ..LoadOptions::default()
-        };
-        assert_eq!(options, expected);
-        assert!(of(r#"{"adjusts": true}"#).is_err());
     }
 
     #[test]

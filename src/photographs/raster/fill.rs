@@ -1,5 +1,6 @@
 //! Filling on small rasters: polygons into masks, gaps with smooth colours.
 
+use glam::Vec3;
 use nalgebra::Point2;
 
 /// Sets the pixels of a mask (`width * height`) whose centres lie inside the rings (even-odd).
@@ -39,25 +40,25 @@ pub(crate) fn mark_inside(
 
 /// Fills the pixels that are not `known` with smooth colours from the known ones around them
 /// (push-pull pyramid, Gortler et al. 1996). Without any known pixel nothing changes.
-pub(crate) fn fill_gaps(colours: &mut [[f32; 3]], known: &[bool], width: usize, height: usize) {
+pub(crate) fn fill_gaps(colours: &mut [Vec3], known: &[bool], width: usize, height: usize) {
     if known.iter().all(|&k| k) || !known.contains(&true) {
         return;
     }
     let (w, h) = (width.div_ceil(2), height.div_ceil(2));
-    let mut half = vec![[0.0f32; 3]; w * h];
+    let mut half = vec![Vec3::ZERO; w * h];
     let mut half_known = vec![false; w * h];
     for y in 0..h {
         for x in 0..w {
-            let mut sum = [0.0f32; 3];
+            let mut sum = Vec3::ZERO;
             let mut count = 0u8;
             for j in 2 * y..(2 * y + 2).min(height) {
                 for i in (2 * x..(2 * x + 2).min(width)).filter(|i| known[j * width + i]) {
-                    (0..3).for_each(|c| sum[c] += colours[j * width + i][c]);
+                    sum += colours[j * width + i];
                     count += 1;
                 }
             }
             if count > 0 {
-                half[y * w + x] = sum.map(|s| s / f32::from(count));
+                half[y * w + x] = sum / f32::from(count);
                 half_known[y * w + x] = true;
             }
         }
@@ -71,7 +72,7 @@ pub(crate) fn fill_gaps(colours: &mut [[f32; 3]], known: &[bool], width: usize, 
 }
 
 /// The colour of a pixel in a raster of half the size, bilinear.
-fn doubled(half: &[[f32; 3]], w: usize, h: usize, x: usize, y: usize) -> [f32; 3] {
+fn doubled(half: &[Vec3], w: usize, h: usize, x: usize, y: usize) -> Vec3 {
     // The centre of pixel x lies a quarter before or behind the centre of pixel x / 2.
     let near = |i: usize, n: usize| {
         let other = if i.is_multiple_of(2) {
@@ -82,12 +83,8 @@ fn doubled(half: &[[f32; 3]], w: usize, h: usize, x: usize, y: usize) -> [f32; 3
         (i / 2, other)
     };
     let ((x0, x1), (y0, y1)) = (near(x, w), near(y, h));
-    let mut colour = [0.0; 3];
-    for (c, value) in colour.iter_mut().enumerate() {
-        let row = |y: usize| 0.75 * half[y * w + x0][c] + 0.25 * half[y * w + x1][c];
-        *value = 0.75 * row(y0) + 0.25 * row(y1);
-    }
-    colour
+    let row = |y: usize| 0.75 * half[y * w + x0] + 0.25 * half[y * w + x1];
+    0.75 * row(y0) + 0.25 * row(y1)
 }
 
 #[cfg(test)]
@@ -119,20 +116,20 @@ mod tests {
     #[test]
     fn gaps_take_the_colours_around_them() {
         let (w, h) = (13, 7);
-        let mut colours = vec![[0.0; 3]; w * h];
+        let mut colours = vec![Vec3::ZERO; w * h];
         let mut known = vec![false; w * h];
         for y in 0..h {
             for x in [0, 1, 11, 12] {
                 known[y * w + x] = true;
-                colours[y * w + x] = [if x < 6 { 10.0 } else { 90.0 }, 50.0, 0.0];
+                colours[y * w + x] = Vec3::new(if x < 6 { 10.0 } else { 90.0 }, 50.0, 0.0);
             }
         }
         fill_gaps(&mut colours, &known, w, h);
         assert!(
             colours
                 .iter()
-                .all(|c| (10.0..=90.0).contains(&c[0]) && c[1] == 50.0)
+                .all(|c| (10.0..=90.0).contains(&c.x) && c.y == 50.0)
         );
-        assert!(colours[3 * w + 3][0] < 40.0 && colours[3 * w + 9][0] > 60.0);
+        assert!(colours[3 * w + 3].x < 40.0 && colours[3 * w + 9].x > 60.0);
     }
 }

@@ -15,6 +15,7 @@
 
 use std::ops::Range;
 
+use glam::{DVec3, Vec3};
 use gltf_json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf_json::buffer::Target;
 use gltf_json::mesh::{Mode, Semantic};
@@ -66,8 +67,8 @@ struct GlbFile {
 /// Vertices and triangles of a mesh.
 #[derive(Default)]
 struct MeshBuffers {
-    positions: Vec<[f32; 3]>,
-    normals: Vec<[f32; 3]>,
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
     uv: Vec<[f32; 2]>,
     indices: Vec<u32>,
 }
@@ -80,7 +81,7 @@ impl MeshBuffers {
         let Some(normal) = area.try_normalize(1e-12) else {
             return;
         };
-        let y_up = |v: &nalgebra::Vector3<f64>| [v.x as f32, v.z as f32, -v.y as f32];
+        let y_up = |v: &nalgebra::Vector3<f64>| DVec3::new(v.x, v.z, -v.y).as_vec3();
         for (&v, uv) in face.rings.iter().flatten().zip(texture.uv.iter().flatten()) {
             self.positions
                 .push(y_up(&solid.vertices[v as usize].coords));
@@ -193,11 +194,11 @@ impl GlbFile {
             uv,
             indices,
         } = triangles;
-        let bounds = |pick: fn(f32, f32) -> f32| {
-            let fold = |axis: usize| positions.iter().map(|p| p[axis]).reduce(pick);
-            Some(json!([fold(0), fold(1), fold(2)]))
+        let bounds = |pick: fn(Vec3, Vec3) -> Vec3| {
+            let found = positions.iter().copied().reduce(pick);
+            found.map(|p| json!(p.to_array()))
         };
-        let (min, max) = (bounds(f32::min), bounds(f32::max));
+        let (min, max) = (bounds(Vec3::min), bounds(Vec3::max));
         let position = self.add_floats(&positions, Type::Vec3);
         self.root.accessors[position.value()].min = min;
         self.root.accessors[position.value()].max = max;
@@ -235,13 +236,12 @@ impl GlbFile {
 
     fn add_floats<const N: usize>(
         &mut self,
-        values: &[[f32; N]],
+        values: &[impl Copy + Into<[f32; N]>],
         kind: Type,
     ) -> Index<gltf::Accessor> {
         let bytes: Vec<u8> = values
             .iter()
-            .flatten()
-            .flat_map(|v| v.to_le_bytes())
+            .flat_map(|&v| v.into().map(f32::to_le_bytes).into_iter().flatten())
             .collect();
         let component = GenericComponentType(ComponentType::F32);
         self.add_accessor(&bytes, values.len(), component, kind, Target::ArrayBuffer)

@@ -5,6 +5,8 @@
 //! bring all of them together with as little change as possible. What a face looks like from
 //! different sides varies too, so each pair of views is compared by the median over all faces.
 
+use glam::{DVec3, Vec3};
+
 use super::occlusion::FaceImages;
 use super::paint::{FaceView, MAX_GAIN, colours_in, views_of};
 use super::patch::{FacePlane, TexturePatch};
@@ -34,7 +36,7 @@ pub(super) fn exposures(
     faces: &[FacePlane],
     face_images: &[FaceImages],
     overhang_m: f64,
-) -> Vec<[f32; 3]> {
+) -> Vec<Vec3> {
     let views = scene.views.len();
     let compared = crate::base::execution::map_part(faces, 0.2..0.3, |i, face| {
         let [low, high] = face.bounds();
@@ -56,12 +58,13 @@ pub(super) fn exposures(
         balanced(&of_pair.iter().map(ratio).collect::<Vec<_>>(), views)
     });
     (0..views)
-        .map(|v| [0, 1, 2].map(|c| (exp(factors[c][v]) as f32).clamp(1.0 / MAX_GAIN, MAX_GAIN)))
+        .map(|v| Vec3::from_array([0, 1, 2].map(|c| exp(factors[c][v]) as f32)))
+        .map(|gain| gain.clamp(Vec3::splat(1.0 / MAX_GAIN), Vec3::splat(MAX_GAIN)))
         .collect()
 }
 
 /// The colours of a face in a view, where it shows them.
-type Colours = Vec<Option<[f32; 3]>>;
+type Colours = Vec<Option<Vec3>>;
 
 /// By how much the first of two views is brighter, for every two that show enough of a face.
 fn log_ratios(seen: &[(ViewId, Colours)]) -> Vec<([usize; 2], [f64; 3])> {
@@ -79,15 +82,15 @@ fn log_ratios(seen: &[(ViewId, Colours)]) -> Vec<([usize; 2], [f64; 3])> {
 /// green and blue. `None` where these are too few, black or saturated.
 fn log_ratio(a: &Colours, b: &Colours) -> Option<[f64; 3]> {
     let both = a.iter().zip(b).filter_map(|(x, y)| Some([(*x)?, (*y)?]));
-    let (mut sums, mut count) = ([[0.0f64; 2]; 3], 0usize);
-    for colours in both.filter(|colours| colours.iter().flatten().all(|c| *c < SATURATED_GREY)) {
-        for (c, sum) in sums.iter_mut().enumerate() {
-            (0..2).for_each(|of| sum[of] += f64::from(colours[of][c]));
+    let (mut sums, mut count) = ([DVec3::ZERO; 2], 0usize);
+    for colours in both.filter(|colours| colours.iter().all(|c| c.max_element() < SATURATED_GREY)) {
+        for (sum, colour) in sums.iter_mut().zip(colours) {
+            *sum += colour.as_dvec3();
         }
         count += 1;
     }
-    let black = sums.iter().flatten().any(|sum| *sum < count as f64);
-    (count >= LEAST_COMMON && !black).then(|| sums.map(|[x, y]| ln(x / y)))
+    let black = sums.iter().any(|sum| sum.min_element() < count as f64);
+    (count >= LEAST_COMMON && !black).then(|| (sums[0] / sums[1]).to_array().map(ln))
 }
 
 /// The logarithms of the factors that bring views together, given by how much (a logarithm) the
@@ -117,12 +120,12 @@ mod tests {
 
     /// A face of 40 texels in views of these exposures; the first half of it is hidden from the
     /// last.
-    fn face(exposures: &[f32], colour: [f32; 3]) -> Vec<(ViewId, Colours)> {
+    fn face(exposures: &[f32], colour: Vec3) -> Vec<(ViewId, Colours)> {
         let of_view = |(v, exposure): (usize, &f32)| {
             let hidden = |k: usize| v + 1 == exposures.len() && k < 20;
             let texel = |k: usize| {
                 let shade = exposure * (0.5 + 0.5 * (k as f32 / 40.0));
-                (!hidden(k)).then(|| colour.map(|c| c * shade))
+                (!hidden(k)).then(|| colour * shade)
             };
             (ViewId::from_index(v), (0..40).map(texel).collect())
         };
@@ -131,16 +134,19 @@ mod tests {
 
     #[test]
     fn the_same_texels_tell_how_much_brighter_a_view_is() {
-        let ratios = log_ratios(&face(&[1.0, 1.3, 0.8], [120.0, 90.0, 60.0]));
+        let ratios = log_ratios(&face(&[1.0, 1.3, 0.8], Vec3::new(120.0, 90.0, 60.0)));
         assert_eq!(ratios.len(), 3);
         for ([a, b], ratio) in ratios {
             let exposures = [1.0f64, 1.3, 0.8];
             let expected = ln(exposures[a] / exposures[b]);
             assert!(ratio.iter().all(|r| (r - expected).abs() < 1e-5), "{a} {b}");
         }
-        assert!(log_ratios(&face(&[1.0, 1.0], [0.5; 3])).is_empty(), "black");
         assert!(
-            log_ratios(&face(&[4.0, 4.0], [255.0; 3])).is_empty(),
+            log_ratios(&face(&[1.0, 1.0], Vec3::splat(0.5))).is_empty(),
+            "black"
+        );
+        assert!(
+            log_ratios(&face(&[4.0, 4.0], Vec3::splat(255.0))).is_empty(),
             "white"
         );
     }

@@ -73,6 +73,7 @@ pub fn texture_ground(
         };
         let is_shown = scene.views.iter().any(|v| in_view(&v.camera));
         let [r, g, b] = painted.colours[y as usize * patch.width + x as usize]
+            .to_array()
             .map(|c| c.round().clamp(0.0, 255.0) as u8);
         let opacity = if is_shown {
             fade(x, patch.width) * fade(y, patch.height)

@@ -28,6 +28,7 @@ mod patch;
 pub use ground::{GroundTexture, texture_ground};
 pub use paint::ViewOfFace;
 
+use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use self::atlas::{Packing, pack};
@@ -45,10 +46,10 @@ use crate::roofs::model::{RoofModel, Surface};
 const MAX_TEXEL_GROUND_PIXELS: f64 = 8.0;
 
 /// The colour of faces where nothing at all is seen.
-const NEUTRAL: [f32; 3] = [128.0; 3];
+const NEUTRAL: Vec3 = Vec3::splat(128.0);
 
 /// The colour of walls where no view shows one: plaster.
-const PLASTER: [f32; 3] = [205.0, 200.0, 190.0];
+const PLASTER: Vec3 = Vec3::new(205.0, 200.0, 190.0);
 
 /// The texture of one face of a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -233,14 +234,14 @@ fn lay_out(
 /// Gives faces that no view shows the mean colour of the faces of their kind, or of all.
 fn colour_unseen(painted: &mut [PaintedPatch], kinds: &[Surface]) {
     let mean = |keep: &dyn Fn(&Surface) -> bool| {
-        let mut sum = [0.0f64; 4];
+        let (mut sum, mut count) = (DVec3::ZERO, 0.0);
         for (p, _) in painted.iter().zip(kinds).filter(|(_, kind)| keep(kind)) {
             for (colour, _) in p.colours.iter().zip(&p.known).filter(|(_, known)| **known) {
-                (0..3).for_each(|c| sum[c] += f64::from(colour[c]));
-                sum[3] += 1.0;
+                sum += colour.as_dvec3();
+                count += 1.0;
             }
         }
-        (sum[3] > 0.0).then(|| [0, 1, 2].map(|c| (sum[c] / sum[3]) as f32))
+        (count > 0.0).then(|| (sum / count).as_vec3())
     };
     let any = mean(&|_| true).unwrap_or(NEUTRAL);
     let roof = mean(&|kind| matches!(kind, Surface::Roof(_))).unwrap_or(any);
@@ -268,7 +269,7 @@ fn draw(
     padding: usize,
 ) -> image::RgbImage {
     let (w, h) = (packing.width, packing.height);
-    let mut colours = vec![[0.0f32; 3]; w * h];
+    let mut colours = vec![Vec3::ZERO; w * h];
     let mut known = vec![false; w * h];
     for ((patch, painted), &(x0, y0)) in patches.iter().zip(painted).zip(&packing.places) {
         for y in 0..patch.height + 2 * padding {
@@ -285,8 +286,8 @@ fn draw(
     fill_gaps(&mut colours, &known, w, h);
     let bytes = colours
         .iter()
-        .flatten()
-        .map(|&c| c.round().clamp(0.0, 255.0) as u8)
+        .flat_map(Vec3::to_array)
+        .map(|c| c.round().clamp(0.0, 255.0) as u8)
         .collect();
     image::RgbImage::from_raw(w as u32, h as u32, bytes).expect("three bytes a pixel")
 }

@@ -1,5 +1,6 @@
 //! The colours of one patch: from the view that shows most of it, gaps from the next ones.
 
+use glam::{DVec3, Vec3};
 use nalgebra::{Matrix2, Matrix3x2, Point2};
 use serde::Serialize;
 
@@ -36,7 +37,7 @@ pub struct ViewOfFace {
 /// A painted patch.
 pub(super) struct PaintedPatch {
     /// `width * height` colours, 0 to 255; meaningless where no texel is known.
-    pub colours: Vec<[f32; 3]>,
+    pub colours: Vec<Vec3>,
     /// Texels inside the face that some view shows.
     pub known: Vec<bool>,
     /// The views that show some of the face, the one that shows most pixels of it first.
@@ -65,7 +66,7 @@ pub(super) fn paint(
     face: usize,
     patch: &TexturePatch,
     face_images: &[FaceImages],
-    exposures: &[[f32; 3]],
+    exposures: &[Vec3],
     overhang_m: f64,
 ) -> PaintedPatch {
     let seen = views_of(scene, faces, face, patch, face_images, overhang_m);
@@ -170,7 +171,7 @@ pub(super) fn colours_in(
     plane: &FacePlane,
     patch: &TexturePatch,
     (of_face, mask): &FaceView,
-) -> Vec<Option<[f32; 3]>> {
+) -> Vec<Option<Vec3>> {
     let view = scene.view(of_face.view);
     let texel_px = patch.texel_m * of_face.pixels_per_m2.sqrt();
     let samples = (texel_px.round() as usize).clamp(1, MAX_SUPERSAMPLING);
@@ -186,10 +187,10 @@ fn compose(
     plane: &FacePlane,
     patch: &TexturePatch,
     seen: &[FaceView],
-    exposures: &[[f32; 3]],
-) -> (Vec<[f32; 3]>, Vec<bool>) {
+    exposures: &[Vec3],
+) -> (Vec<Vec3>, Vec<bool>) {
     let count = patch.width * patch.height;
-    let (mut colours, mut known) = (vec![[0.0f32; 3]; count], vec![false; count]);
+    let (mut colours, mut known) = (vec![Vec3::ZERO; count], vec![false; count]);
     for view in seen {
         if (0..count).all(|i| known[i] || !view.1[i]) {
             continue;
@@ -198,12 +199,15 @@ fn compose(
         expose(&mut shown, exposures[view.0.view.index()]);
         if known.contains(&true) {
             let gain = gain_to(&colours, &known, &shown);
-            brighten(&mut shown, gain);
+            shown
+                .iter_mut()
+                .flatten()
+                .for_each(|colour| *colour *= gain);
             level(&mut shown, &colours, &known, patch.width);
         }
         for i in 0..count {
             if let (Some(colour), false) = (shown[i], known[i]) {
-                colours[i] = colour.map(|c| c.clamp(0.0, 255.0));
+                colours[i] = colour.clamp(Vec3::ZERO, Vec3::splat(255.0));
                 known[i] = true;
             }
         }
@@ -213,61 +217,43 @@ fn compose(
 
 /// Brightens dark colours by a factor per channel, and light ones less, so that what is white in
 /// the photograph stays white.
-fn expose(shown: &mut [Option<[f32; 3]>], factor: [f32; 3]) {
+fn expose(shown: &mut [Option<Vec3>], factor: Vec3) {
     for colour in shown.iter_mut().flatten() {
-        for (c, factor) in factor.iter().enumerate() {
-            colour[c] *= factor / (1.0 + (factor - 1.0) * colour[c] / 255.0);
-        }
-    }
-}
-
-/// Multiplies colours by a factor per channel.
-fn brighten(shown: &mut [Option<[f32; 3]>], factor: [f32; 3]) {
-    for colour in shown.iter_mut().flatten() {
-        (0..3).for_each(|c| colour[c] *= factor[c]);
+        *colour *= factor / (1.0 + (factor - 1.0) * *colour / 255.0);
     }
 }
 
 /// Shifts a view's colours so that no seam shows where they meet those already painted: by the
 /// difference of both where both are known, continued smoothly to where only the new ones are.
-fn level(shown: &mut [Option<[f32; 3]>], colours: &[[f32; 3]], known: &[bool], width: usize) {
+fn level(shown: &mut [Option<Vec3>], colours: &[Vec3], known: &[bool], width: usize) {
     let common: Vec<bool> = (shown.iter().zip(known))
         .map(|(new, known)| new.is_some() && *known)
         .collect();
-    let mut shifts: Vec<[f32; 3]> = (shown.iter().zip(colours))
-        .map(|(new, old)| {
-            let shift = |c: usize| old[c] - new.map_or(0.0, |new| new[c]);
-            [0, 1, 2].map(|c| shift(c).clamp(-MAX_SHIFT, MAX_SHIFT))
-        })
+    let most = Vec3::splat(MAX_SHIFT);
+    let mut shifts: Vec<Vec3> = (shown.iter().zip(colours))
+        .map(|(new, old)| (old - new.unwrap_or_default()).clamp(-most, most))
         .collect();
     fill_gaps(&mut shifts, &common, width, known.len() / width);
     if common.contains(&true) {
         for (colour, shift) in shown.iter_mut().zip(&shifts) {
             let Some(colour) = colour else { continue };
-            (0..3).for_each(|c| colour[c] += shift[c]);
+            *colour += *shift;
         }
     }
 }
 
 /// The factor per channel that brings a view's colours to those already painted.
-fn gain_to(colours: &[[f32; 3]], known: &[bool], shown: &[Option<[f32; 3]>]) -> [f32; 3] {
-    let (mut painted, mut offered) = ([0.0f64; 3], [0.0f64; 3]);
+fn gain_to(colours: &[Vec3], known: &[bool], shown: &[Option<Vec3>]) -> Vec3 {
+    let (mut painted, mut offered) = (DVec3::ZERO, DVec3::ZERO);
     for i in (0..colours.len()).filter(|&i| known[i]) {
         if let Some(colour) = shown[i] {
-            for c in 0..3 {
-                painted[c] += f64::from(colours[i][c]);
-                offered[c] += f64::from(colour[c]);
-            }
+            painted += colours[i].as_dvec3();
+            offered += colour.as_dvec3();
         }
     }
-    [0, 1, 2].map(|c| {
-        let gain = if offered[c] > 0.0 {
-            (painted[c] / offered[c]) as f32
-        } else {
-            1.0
-        };
-        gain.clamp(1.0 / MAX_GAIN, MAX_GAIN)
-    })
+    let offers = offered.cmpgt(DVec3::ZERO);
+    let gain = DVec3::select(offers, painted / offered, DVec3::ONE).as_vec3();
+    gain.clamp(Vec3::splat(1.0 / MAX_GAIN), Vec3::splat(MAX_GAIN))
 }
 
 /// Mean colour of a texel over `samples * samples` positions in the image.
@@ -278,25 +264,25 @@ fn texel(
     patch: &TexturePatch,
     index: usize,
     samples: usize,
-) -> [f32; 3] {
+) -> Vec3 {
     let (column, row) = ((index % patch.width) as f64, (index / patch.width) as f64);
     let step = 1.0 / samples as f64;
-    let mut sum = [0.0f32; 3];
+    let mut sum = Vec3::ZERO;
     let mut count = 0u8;
     for k in 0..samples * samples {
         let x = column + ((k % samples) as f64 + 0.5) * step;
         let y = row + ((k / samples) as f64 + 0.5) * step;
         let image = camera.project(&plane.lift(&patch.point_of(x, y)));
         if let Some(colour) = image.and_then(|p| bilinear(rgb, &p)) {
-            (0..3).for_each(|c| sum[c] += colour[c]);
+            sum += colour;
             count += 1;
         }
     }
-    sum.map(|s| s / f32::from(count.max(1)))
+    sum / f32::from(count.max(1))
 }
 
 /// Bilinear colour at an image position; `None` outside the centres of the border pixels.
-fn bilinear(rgb: &image::RgbImage, p: &Point2<f64>) -> Option<[f32; 3]> {
+fn bilinear(rgb: &image::RgbImage, p: &Point2<f64>) -> Option<Vec3> {
     let (x, y) = (p.x - 0.5, p.y - 0.5);
     let (w, h) = (rgb.width() as usize, rgb.height() as usize);
     if !(x >= 0.0 && y >= 0.0 && x <= (w - 1) as f64 && y <= (h - 1) as f64) {
@@ -309,12 +295,13 @@ fn bilinear(rgb: &image::RgbImage, p: &Point2<f64>) -> Option<[f32; 3]> {
     let (fx, fy) = ((x - column as f64) as f32, (y - row as f64) as f32);
     let (right, below) = ((column + 1).min(w - 1), (row + 1).min(h - 1));
     let raw = rgb.as_raw();
-    let at = |x: usize, y: usize, c: usize| f32::from(raw[(y * w + x) * 3 + c]);
-    Some([0, 1, 2].map(|c| {
-        let top = at(column, row, c) * (1.0 - fx) + at(right, row, c) * fx;
-        let bottom = at(column, below, c) * (1.0 - fx) + at(right, below, c) * fx;
-        top * (1.0 - fy) + bottom * fy
-    }))
+    let at = |x: usize, y: usize| {
+        let first = (y * w + x) * 3;
+        Vec3::from_array([0, 1, 2].map(|c| f32::from(raw[first + c])))
+    };
+    let top = at(column, row) * (1.0 - fx) + at(right, row) * fx;
+    let bottom = at(column, below) * (1.0 - fx) + at(right, below) * fx;
+    Some(top * (1.0 - fy) + bottom * fy)
 }
 
 #[cfg(test)]
@@ -327,17 +314,17 @@ mod tests {
     fn levelled(offset: f32) -> Vec<f32> {
         let shade = |i: usize| 100.0 + (i % 40) as f32;
         let known: Vec<bool> = (0..400).map(|i| i % 40 < 20).collect();
-        let colours: Vec<[f32; 3]> = (0..400).map(|i| [shade(i), 90.0, 80.0]).collect();
-        let mut shown: Vec<Option<[f32; 3]>> = (0..400)
-            .map(|i| (i % 40 >= 12).then(|| [shade(i) - offset, 90.0 - offset, 80.0]))
+        let colours: Vec<Vec3> = (0..400).map(|i| Vec3::new(shade(i), 90.0, 80.0)).collect();
+        let mut shown: Vec<Option<Vec3>> = (0..400)
+            .map(|i| (i % 40 >= 12).then(|| Vec3::new(shade(i) - offset, 90.0 - offset, 80.0)))
             .collect();
         level(&mut shown, &colours, &known, 40);
         (0..40)
             .map(|i| {
                 if known[i] {
-                    colours[i][0]
+                    colours[i].x
                 } else {
-                    shown[i].unwrap()[0]
+                    shown[i].unwrap().x
                 }
             })
             .collect()
@@ -366,21 +353,22 @@ mod tests {
     #[test]
     fn exposure_leaves_black_and_white() {
         for factor in [0.7, 1.0, 1.4] {
-            let mut shown = [0.0, 1.0, 255.0].map(|grey| Some([grey; 3]));
-            expose(&mut shown, [factor, 1.0, 1.0]);
-            let [black, dark, white] = shown.map(|colour| colour.unwrap()[0]);
+            let mut shown = [0.0, 1.0, 255.0].map(|grey| Some(Vec3::splat(grey)));
+            expose(&mut shown, Vec3::new(factor, 1.0, 1.0));
+            let [black, dark, white] = shown.map(|colour| colour.unwrap().x);
             assert_eq!(black, 0.0);
             assert!((dark - factor).abs() < 0.01, "{dark} by {factor}");
             assert!((white - 255.0).abs() < 1e-3);
-            assert_eq!(shown[1].unwrap()[1..], [1.0, 1.0]);
+            assert_eq!(shown[1].unwrap(), Vec3::new(dark, 1.0, 1.0));
         }
     }
 
     #[test]
     fn views_without_a_texel_in_common_stay_as_they_are() {
         let known = [true, true, false, false];
-        let mut shown = [None, None, Some([50.0; 3]), Some([60.0; 3])];
-        level(&mut shown, &[[90.0; 3]; 4], &known, 4);
-        assert_eq!(shown, [None, None, Some([50.0; 3]), Some([60.0; 3])]);
+        let shown = [None, None, Some(Vec3::splat(50.0)), Some(Vec3::splat(60.0))];
+        let mut levelled = shown;
+        level(&mut levelled, &[Vec3::splat(90.0); 4], &known, 4);
+        assert_eq!(levelled, shown);
     }
 }

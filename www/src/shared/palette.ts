@@ -9,7 +9,7 @@ export const PALETTE = {
   grown: "#ff9d2e",
   halfPlane: "#14b8a0",
   rejected: "#e5484d",
-  bar: "#3fbf6f",
+  border: "#3fbf6f",
   beam: "#f4f6f8",
   selected: "#ffe11a",
   casing: "#14171c",

@@ -12,33 +12,32 @@ export function isRejected({ rejection }: SideRecord): boolean {
   return rejection !== null && rejection !== "on_ground" && rejection !== "explained";
 }
 
-/** What else may propose planes, of which a result knows nothing where an older core found it. */
-type Proposed = Partial<Pick<Facet | PlaneGroup, "proposals">>;
+type Proposed = Pick<Facet | PlaneGroup, "proposals">;
 
 /** Candidates of W96 that proposed a plane. */
-export function rectanglesOf({ proposals = [] }: Proposed): number[] {
+export function rectanglesOf({ proposals }: Proposed): number[] {
   return proposals.flatMap((one) => ("rectangle" in one ? [one.rectangle] : []));
 }
 
 /** Planes of dense matching that proposed a plane. */
-export function densePlanesOf({ proposals = [] }: Proposed): number[] {
+export function densePlanesOf({ proposals }: Proposed): number[] {
   return proposals.flatMap((one) => ("dense_plane" in one ? [one.dense_plane] : []));
 }
 
 /** Sets of coplanar lines that proposed a plane. */
-export function coplanarSetsOf({ proposals = [] }: Proposed): number[] {
+export function coplanarSetsOf({ proposals }: Proposed): number[] {
   return proposals.flatMap((one) => ("coplanar_set" in one ? [one.coplanar_set] : []));
 }
 
 /** Planes of corners that proposed a plane. */
-export function cornerPlanesOf({ proposals = [] }: Proposed): number[] {
+export function cornerPlanesOf({ proposals }: Proposed): number[] {
   return proposals.flatMap((one) => ("corner_plane" in one ? [one.corner_plane] : []));
 }
 
 /** Whether a facet was made from a group: they share a half-plane or a proposal. */
 export function isMadeFrom(
-  { half_planes = [], ...facet }: Pick<Facet, "half_planes" | "proposals">,
-  { members, ...group }: Pick<PlaneGroup, "members"> & Proposed,
+  { half_planes, ...facet }: Pick<Facet, "half_planes" | "proposals">,
+  { members, ...group }: Pick<PlaneGroup, "members" | "proposals">,
 ): boolean {
   const shares = (of: (from: Proposed) => number[]) => of(group).some((one) => of(facet).includes(one));
   return (

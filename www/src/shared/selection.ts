@@ -9,7 +9,7 @@ const TEXTS = {
   view: "view:index",
   segment: "segment:view.index",
   /** A line of edgels that is no segment. */
-  rejectedSegment: "refused:view.index",
+  rejectedSegment: "rejected:view.index",
   /** W96: a region of a view. */
   region: "region:view.index",
   line: "line:index",

@@ -39,9 +39,9 @@ function stopOf(error: unknown, lastWords: string | null): Pick<Failure, "messag
   return isTrap || isTooDeep ? { message: error.message, kind: "crash" } : null;
 }
 
-/** A panic's message and place, without its stack; null where there was none. */
+/** A panic's message and place; null where there was none. */
 function panicOf(words: string | null): string | null {
-  const found = /panicked at (.+?):(\d+):\d+:\n([\s\S]*?)(?:\n\nStack:|$)/.exec(words ?? "");
+  const found = /panicked at (.+?):(\d+):\d+:\n([\s\S]*)/.exec(words ?? "");
   if (found === null) {
     return null;
   }

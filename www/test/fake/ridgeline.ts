@@ -171,6 +171,15 @@ export class Session implements CoreSession {
       name: path.slice(path.lastIndexOf("/") + 1),
       size: [SIZE_PX, SIZE_PX] as [number, number],
       orientation: "planted",
+      stated: {
+        camera: "",
+        focal_mm: null,
+        focal_px: null,
+        taken: null,
+        position: null,
+        height_m: null,
+        yaw_pitch_roll: null,
+      },
     }));
     return {
       files: this.#files.map((path) => ({ path, kind: "image" as const, description: "a file" })),

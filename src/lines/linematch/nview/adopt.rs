@@ -177,7 +177,7 @@ impl MatchContext<'_> {
             ))
         });
         let (along, against): (Vec<_>, Vec<_>) =
-            on_line.partition(|(_, along)| *along || !self.compatibility.is_directed(kind));
+            on_line.partition(|(_, along)| *along || !self.compatibility.contrast);
         let own = if along.is_empty() { against } else { along };
         own.into_iter().map(|(name, _)| name).collect()
     }

@@ -6,7 +6,7 @@
 //! where it passes through half.
 
 use super::profile::{LineProfile, ViewProfile};
-use crate::lines::lines2d::{PIECE_PX, SegmentKind};
+use crate::lines::lines2d::PIECE_PX;
 use crate::orienting::scene::Scene;
 
 /// Range about the end of a stretch in which the edge may end, edgels: the piece before it, and
@@ -91,11 +91,7 @@ fn steps_in(
             image.sample(q.x as f32, q.y as f32).map(f64::from)
         };
         let (left, right) = (beside(-BASE_PX)?, beside(BASE_PX)?);
-        Some(match edge.kind {
-            SegmentKind::Edge | SegmentKind::Color => right - left,
-            // The sign does not matter, because the mean inside has the same.
-            SegmentKind::BrightBar | SegmentKind::DarkBar => 2.0 * beside(0.0)? - left - right,
-        })
+        Some(right - left)
     };
     edgels.iter().map(step).collect()
 }
@@ -116,7 +112,7 @@ fn last_of_edge(steps: &[f64]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lines::lines2d::measure_edge;
+    use crate::lines::lines2d::{SegmentKind, measure_edge};
     use crate::lines::lines3d::ProjectedLine;
     use crate::lines::lines3d::planted;
 

@@ -215,19 +215,6 @@ mod tests {
     }
 
     #[test]
-    fn the_gradient_points_to_the_brighter_side() {
-        for angle in [0.2, 1.7, 3.0, 5.1] {
-            let gray = step_edge(80, 80, angle, 0.3);
-            for (e, _) in near_edge(&gray, angle) {
-                let brighter = e.position + e.gradient.cast::<f64>().normalize() * 3.0;
-                assert!(distance_to_edge(&gray, angle, &brighter) > 2.0);
-                let t = e.tangent();
-                assert!(Vector2::new(-t.y, t.x).dot(&e.gradient.cast::<f64>()) > 0.0);
-            }
-        }
-    }
-
-    #[test]
     fn tiny_and_flat_images_have_no_edgels() {
         for (w, h) in [(0, 0), (1, 1), (2, 9), (9, 2), (5, 5), (40, 3)] {
             let gray = Gray::from_fn(w, h, |_, _| 0.5);

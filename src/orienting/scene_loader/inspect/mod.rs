@@ -15,6 +15,7 @@ use super::candidate::OrientationCandidate;
 use super::ground::plan_scene;
 use super::input::LoadOptions;
 use crate::orienting::orientation::{FileKind, InputFile};
+use crate::orienting::structure_from_motion::PhotoMetadata;
 
 /// Everything that is known about a set of files without decoding an image.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -65,6 +66,8 @@ pub struct ImageReport {
     pub size: Option<(u32, u32)>,
     /// File and line of its orientation; `None` when it has none.
     pub orientation: Option<String>,
+    /// What the file says of where, when and with what it was taken.
+    pub stated: PhotoMetadata,
 }
 
 /// Recognises files and plans a scene.
@@ -88,11 +91,18 @@ pub fn inspect_files(files: &[InputFile], options: &LoadOptions) -> Inspection {
             None => files[file].path.clone(),
         }
     };
-    let images = plan.images.iter().map(|image| ImageReport {
-        path: files[image.file].path.clone(),
-        name: name(image.file),
-        size: image.header.map(|h| (h.width, h.height)),
-        orientation: image.orientation.as_ref().map(|o| o.source.clone()),
+    let images = plan.images.iter().map(|image| {
+        let size = image.header.map(|h| (h.width, h.height));
+        ImageReport {
+            path: files[image.file].path.clone(),
+            name: name(image.file),
+            size,
+            orientation: image.orientation.as_ref().map(|o| o.source.clone()),
+            stated: PhotoMetadata::read(
+                files[image.file].content().start(),
+                size.unwrap_or_default().into(),
+            ),
+        }
     });
     Inspection {
         files: described.collect(),

@@ -14,6 +14,7 @@ use self::tiff_tags::Tags;
 
 /// What is stated of a photograph.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PhotoMetadata {
     /// Maker and model of the camera; empty where not stated.
     pub camera: String,
@@ -21,9 +22,12 @@ pub struct PhotoMetadata {
     pub focal_mm: Option<f64>,
     /// Focal length in pixels of the photograph as it is stored, from whatever states it.
     pub focal_px: Option<f64>,
-    /// Longitude and latitude (degrees, WGS84) and height (metres, above whatever the receiver
-    /// takes for zero).
-    pub position: Option<[f64; 3]>,
+    /// When it was taken, "YYYY-MM-DD HH:MM:SS" by the camera's clock.
+    pub taken: Option<String>,
+    /// Longitude and latitude, degrees, WGS84.
+    pub position: Option<[f64; 2]>,
+    /// Height of the position, metres above whatever the receiver takes for zero.
+    pub height_m: Option<f64>,
     /// Yaw (from north, clockwise), pitch (0 level, -90 down) and roll of the camera, degrees.
     pub yaw_pitch_roll: Option<[f64; 3]>,
 }
@@ -49,12 +53,25 @@ impl PhotoMetadata {
                 .to_owned(),
             focal_mm: tags.focal_mm.filter(is_positive),
             focal_px: focal_px(&tags, xmp::number(&xmp, "CalibratedFocalLength"), size),
-            position: tags
-                .position
-                .filter(|p| p[0].abs() <= 180.0 && p[1].abs() <= 90.0 && p[..2] != [0.0, 0.0]),
+            taken: tags.taken.as_deref().and_then(date_and_time),
+            position: (tags.position)
+                .filter(|p| p[0].abs() <= 180.0 && p[1].abs() <= 90.0 && *p != [0.0, 0.0]),
+            height_m: tags.height_m,
             yaw_pitch_roll: xmp::yaw_pitch_roll(&xmp),
         }
     }
+}
+
+/// EXIF's "YYYY:MM:DD HH:MM:SS", which clocks that were never set fill with zeros or blanks.
+fn date_and_time(text: &str) -> Option<String> {
+    let has_form = |(byte, form): (u8, &u8)| match form {
+        b'0' => byte.is_ascii_digit(),
+        b'-' => matches!(byte, b':' | b'-'),
+        _ => byte == *form,
+    };
+    let mut pairs = text.bytes().zip(b"0000-00-00 00:00:00");
+    let is_stated = text.len() == 19 && pairs.all(has_form) && !text.starts_with("0000");
+    is_stated.then(|| text[..10].replace(':', "-") + &text[10..])
 }
 
 fn is_positive(value: &f64) -> bool {
@@ -134,11 +151,23 @@ mod tests {
             assert_eq!(stated.camera, "DJI FC300S");
             assert_eq!(stated.focal_mm, Some(3.61));
             assert!((stated.focal_px.unwrap() - 20.0 / FILM_DIAGONAL_MM * 1000.0).abs() < 1e-9);
-            let [lon, lat, height] = stated.position.unwrap();
+            assert_eq!(stated.taken.as_deref(), Some("2024-05-06 10:11:12"));
+            let [lon, lat] = stated.position.unwrap();
             assert!((lon + 82.697_394).abs() < 1e-6 && (lat - 28.041_25).abs() < 1e-6);
-            assert_eq!(height, 5.5);
+            assert_eq!(stated.height_m, Some(5.5));
             assert_eq!(stated.yaw_pitch_roll, Some([91.5, -89.9, 0.0]));
         }
+    }
+
+    #[test]
+    fn a_clock_that_was_never_set_states_no_time() {
+        let texts = [
+            "0000:00:00 00:00:00",
+            "    :  :     :  :  ",
+            "2024:05:06",
+            "",
+        ];
+        assert_eq!(texts.map(date_and_time), [const { None }; 4]);
     }
 
     #[test]

@@ -12,8 +12,10 @@ pub(super) struct Tags {
     pub pixels_per_mm: Option<f64>,
     pub width: Option<f64>,
     pub height: Option<f64>,
-    /// Longitude, latitude, height.
-    pub position: Option<[f64; 3]>,
+    pub taken: Option<String>,
+    /// Longitude, latitude.
+    pub position: Option<[f64; 2]>,
+    pub height_m: Option<f64>,
 }
 
 /// A directory's entry.
@@ -59,6 +61,7 @@ impl Tags {
         for entry in &exif {
             let number = reader.numbers(entry).first().copied();
             match entry.tag {
+                0x9003 => tags.taken = Some(text(entry.value)),
                 0x920a => tags.focal_mm = number,
                 0xa405 => tags.focal_35mm = number.filter(|mm| *mm > 0.0),
                 0xa20e => tags.pixels_per_mm = number,
@@ -69,12 +72,16 @@ impl Tags {
             }
         }
         tags.pixels_per_mm = tags.pixels_per_mm.map(|n| n / unit_mm);
-        tags.position = position(&reader, &gps);
+        if let Some((position, height_m)) = position(&reader, &gps) {
+            tags.position = Some(position);
+            tags.height_m = height_m;
+        }
         Some(tags)
     }
 }
 
-fn position(reader: &Reader, gps: &[Entry]) -> Option<[f64; 3]> {
+/// Longitude and latitude, and the height where it is stated.
+fn position(reader: &Reader, gps: &[Entry]) -> Option<([f64; 2], Option<f64>)> {
     let of = |tag: u16| gps.iter().find(|e| e.tag == tag);
     let angle = |tag: u16| match reader.numbers(of(tag)?)[..] {
         [degrees, minutes, seconds] => Some(degrees + minutes / 60.0 + seconds / 3600.0),
@@ -84,21 +91,13 @@ fn position(reader: &Reader, gps: &[Entry]) -> Option<[f64; 3]> {
         Some(letter) if letter.eq_ignore_ascii_case(&negative) => -1.0,
         _ => 1.0,
     };
-    let height = of(6)
-        .and_then(|e| reader.numbers(e).first().copied())
-        .unwrap_or(0.0);
     let is_below = of(5).and_then(|e| e.value.first()) == Some(&1);
-    let position = [
-        angle(4)? * sign(3, b'W'),
-        angle(2)? * sign(1, b'S'),
-        // Drones write a height above the sea as one below it where its sign does not fit.
-        if is_below && height > 0.0 {
-            -height
-        } else {
-            height
-        },
-    ];
-    position.iter().all(|v| v.is_finite()).then_some(position)
+    let height = of(6).and_then(|e| reader.numbers(e).first().copied());
+    // Drones write a height above the sea as one below it where its sign does not fit.
+    let height = height.map(|h| if is_below && h > 0.0 { -h } else { h });
+    let position = [angle(4)? * sign(3, b'W'), angle(2)? * sign(1, b'S')];
+    let mut numbers = position.iter().chain(&height);
+    numbers.all(|v| v.is_finite()).then_some((position, height))
 }
 
 fn text(value: &[u8]) -> String {
@@ -218,6 +217,7 @@ pub(super) mod tests {
                 (0x8825, 4, 1, u32s(300).to_vec()),
             ],
             vec![
+                (0x9003, 2, 20, b"2024:05:06 10:11:12\0".to_vec()),
                 (0x920a, 5, 1, rationals(&[[361, 100]])),
                 (0xa405, 3, 1, u16s(20).to_vec()),
             ],

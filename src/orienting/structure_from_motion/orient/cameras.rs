@@ -56,8 +56,12 @@ impl Cameras {
 /// Stated positions in a frame that touches the Earth, and angles.
 pub(super) fn stated_poses(photos: &[Photo]) -> (Vec<StatedPose>, Option<Anchor>) {
     let geocentric = |photo: &Photo| {
-        let [lon, lat, height] = photo.metadata.position?;
-        Some(geocentric_of(lon, lat, height))
+        let [lon, lat] = photo.metadata.position?;
+        Some(geocentric_of(
+            lon,
+            lat,
+            photo.metadata.height_m.unwrap_or(0.0),
+        ))
     };
     let all: Vec<Point3<f64>> = photos.iter().filter_map(geocentric).collect();
     let anchor = (!all.is_empty()).then(|| Anchor::near(&crate::base::geometry::mean_point(&all)));

@@ -69,7 +69,7 @@ impl<'a> Excerpt<'a> {
     }
 
     /// The bytes from the first on, as far as they are in memory.
-    pub(super) fn start(&self) -> &'a [u8] {
+    pub(crate) fn start(&self) -> &'a [u8] {
         let Some(pieces) = self.pieces else {
             return self.bytes;
         };

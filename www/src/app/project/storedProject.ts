@@ -47,13 +47,13 @@ const DELAY_MS = 400;
 /** The project of the last visit; null where there is none, or storage is forbidden. */
 export async function readStoredProject(): Promise<StoredProject | LockedProject | null> {
   try {
-    const kept = await request<StoredProject | undefined>("readonly", (store) => store.get(KEY));
-    const apart = await request<StoredFile[] | undefined>("readonly", (store) => store.get(FILES_KEY));
-    if (kept === undefined) {
+    const kept = await request<Omit<StoredProject, "files"> | undefined>("readonly", (store) =>
+      store.get(KEY),
+    );
+    const stored = await request<StoredFile[] | undefined>("readonly", (store) => store.get(FILES_KEY));
+    if (kept === undefined || stored === undefined) {
       return null;
     }
-    // Older versions kept them with the rest.
-    const stored = apart ?? (kept.files ?? []).map(storedFile);
     const folders = new Set(stored.flatMap((file) => ("folder" in file ? [file.folder] : [])));
     const readable = await Promise.all([...folders].map(isReadable));
     if (readable.every((is) => is)) {

@@ -17,8 +17,7 @@ const found = signal<ResultSets>({ main: NO_RESULTS, regions: NO_RESULTS });
 export const allResults: ReadonlySignal<ResultSets> = found;
 
 export function restoreResults(all: ResultSets): void {
-  // What an older version kept may lack what is new.
-  const whole = (results: Results): Results => ({ ...NO_RESULTS, ...results, tileGlbs: [] });
+  const whole = (results: Results): Results => ({ ...results, tileGlbs: [] });
   found.value = { main: whole(all.main), regions: whole(all.regions) };
 }
 

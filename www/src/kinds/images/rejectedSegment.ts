@@ -11,7 +11,7 @@ import { stretchRows } from "./segment";
 const REASONS = [
   "it is part of a curve",
   "the texture around it explains it",
-  "a bar beside an edge that is a segment already",
+  "an edge in grey values along it is a segment already",
 ];
 
 export default {

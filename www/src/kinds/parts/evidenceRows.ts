@@ -8,13 +8,11 @@ import type { Row } from "./rows";
 const INDICATORS = new Set(["is_border", "is_intersection"]);
 
 /** The core says 1 of what nothing weighed. */
-export function probabilityRow(probability: number | undefined, wasWeighed = false): Row | null {
-  return probability === undefined
-    ? null
-    : ["Probability", probability === 1 && !wasWeighed ? "–" : percentText(probability)];
+export function probabilityRow(probability: number, wasWeighed = false): Row {
+  return ["Probability", probability === 1 && !wasWeighed ? "–" : percentText(probability)];
 }
 
-/** One bar a term, after the one for the prior; results of an older core have no evidence. */
+/** One bar a term, after the one for the prior; null where nothing was weighed. */
 export function evidenceRow(label: string, evidence: Evidence | null | undefined): Row | null {
   if (evidence == null) {
     return null;

@@ -24,7 +24,7 @@ export default {
     })),
   Lab: GroupLab,
   legend: () => [
-    ["bar", "line found in a plane"],
+    ["border-inplane", "line found in a plane"],
     ["unmatched", "thin: no facet"],
   ],
   kinds: {

@@ -53,7 +53,7 @@ export function buildGroups(
     other: drawn(other, WIDTH_PX.other),
     found: strokes(
       found.flatMap(({ segment }) => [...segment.p0, ...segment.p1]),
-      PALETTE.bar,
+      PALETTE.border,
       WIDTH_PX.found,
     ),
     area: areas,

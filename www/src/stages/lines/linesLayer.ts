@@ -21,7 +21,7 @@ export const ORIGIN_COLOURS: Record<LineOrigin, string> = {
   matched: PALETTE.line,
   clustered: PALETTE.grown,
   intersection: PALETTE.merged,
-  border: PALETTE.bar,
+  border: PALETTE.border,
 };
 
 /** A line without support in any view: it is where two planes intersect, and drawn dashed. */

@@ -24,7 +24,7 @@ export default {
   Lab: RefinementLab,
   legend: ({ results: { facets } }) => [
     ["grown", "outline before refinement"],
-    ["bar", "side in an adopted relation"],
+    ["border-inplane", "side in an adopted relation"],
     ["rejected", "rejected; gap in the outline"],
     ...faintEntry(facets),
   ],

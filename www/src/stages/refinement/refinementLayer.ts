@@ -56,7 +56,7 @@ function shownOf(refinement: Refinement, selection: Selection | null): Group | n
   return new Group().add(
     over(sidesOf(outlinesBefore(refinement, index)), PALETTE.grown, SELECTED_PX),
     over(sides(false), PALETTE.rejected, SELECTED_PX / 2),
-    over(sides(true), PALETTE.bar, SELECTED_PX / 2),
+    over(sides(true), PALETTE.border, SELECTED_PX / 2),
   );
 }
 

@@ -40,7 +40,7 @@ describe("the kinds of things", () => {
     expect(ONES.map(formatSelection)).toEqual([
       "view:3",
       "segment:0.44",
-      "refused:2.9",
+      "rejected:2.9",
       "region:3.1",
       "line:12",
       "side:12.left",

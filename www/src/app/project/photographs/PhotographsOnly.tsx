@@ -1,14 +1,12 @@
 /** Photographs without orientation: what is missing, which programs write it, and what the photographs say themselves. */
 import { counted } from "../../parts/counted";
 import "./photographsOnly.css";
-import { signal, useSignalEffect } from "@preact/signals";
+import { signal } from "@preact/signals";
 import { type ComponentChildren, type ComponentType, Fragment } from "preact";
 import { isBusy } from "../../state/activity";
 import { notify } from "../../state/notices";
 import { files, inspection } from "../../state/project";
-import { type PhotographFacts, planOf, readFacts, scaleBarM } from "./photographFacts";
-
-const facts = signal<readonly PhotographFacts[]>([]);
+import { type Photograph, planOf, scaleBarM } from "./photographPlan";
 
 /** What computes and shows the orientation, once it was fetched: most projects come with theirs. */
 const panel = signal<ComponentType | null>(null);
@@ -35,20 +33,8 @@ async function compute(): Promise<void> {
 const begun = signal<readonly unknown[] | null>(null);
 
 export function PhotographsOnly() {
-  useSignalEffect(() => {
-    const paths = new Set(inspection.value?.images.map(({ path }) => path));
-    const photographs = files.value.filter(({ path }) => paths.has(path));
-    let isStale = false;
-    void Promise.all(photographs.map(readFacts)).then((read) => {
-      if (!isStale) {
-        facts.value = read;
-      }
-    });
-    return () => {
-      isStale = true;
-    };
-  });
-  const count = inspection.value?.images.length ?? 0;
+  const photographs = inspection.value?.images ?? [];
+  const count = photographs.length;
   const Panel = panel.value;
   return (
     <section
@@ -89,7 +75,7 @@ export function PhotographsOnly() {
           <Recipes />
         </>
       )}
-      <WhatIsKnown />
+      <WhatIsKnown all={photographs} />
     </section>
   );
 }
@@ -161,9 +147,8 @@ function Recipe(props: { title: string; writes: string; children: ComponentChild
   );
 }
 
-function WhatIsKnown() {
-  const all = facts.value;
-  const placed = all.filter(({ position }) => position !== null).length;
+function WhatIsKnown({ all }: { all: readonly Photograph[] }) {
+  const placed = all.filter(({ stated }) => stated.position !== null).length;
   if (all.length === 0) {
     return null;
   }
@@ -189,13 +174,13 @@ function WhatIsKnown() {
               </tr>
             </thead>
             <tbody>
-              {all.map((one) => (
-                <tr key={one.path}>
-                  <th scope="row">{one.path.slice(one.path.lastIndexOf("/") + 1)}</th>
-                  <td>{one.camera ?? "–"}</td>
-                  <td>{one.focalMm === null ? "–" : `${Number(one.focalMm.toFixed(2))} mm`}</td>
-                  <td>{takenText(one.taken)}</td>
-                  <td>{positionText(one.position)}</td>
+              {all.map(({ path, stated: { camera, focal_mm, taken, position, height_m } }) => (
+                <tr key={path}>
+                  <th scope="row">{path.slice(path.lastIndexOf("/") + 1)}</th>
+                  <td>{camera === "" ? "–" : camera}</td>
+                  <td>{focal_mm === null ? "–" : `${Number(focal_mm.toFixed(2))} mm`}</td>
+                  <td>{taken?.slice(0, "YYYY-MM-DD HH:MM".length) ?? "–"}</td>
+                  <td>{positionText(position, height_m)}</td>
                 </tr>
               ))}
             </tbody>
@@ -206,23 +191,13 @@ function WhatIsKnown() {
   );
 }
 
-/** Largest unit first: no country reads it differently. */
-function takenText(taken: PhotographFacts["taken"]): string {
-  if (taken === null) {
-    return "–";
-  }
-  const two = (value: number) => String(value).padStart(2, "0");
-  const day = [taken.getFullYear(), taken.getMonth() + 1, taken.getDate()].map(two).join("-");
-  return `${day} ${two(taken.getHours())}:${two(taken.getMinutes())}`;
-}
-
-function positionText(position: PhotographFacts["position"]): string {
+function positionText(position: Photograph["stated"]["position"], heightM: number | null): string {
   if (position === null) {
     return "–";
   }
-  const { latitude, longitude, altitudeM } = position;
+  const [longitude, latitude] = position;
   const place = `${latitude.toFixed(5)}°, ${longitude.toFixed(5)}°`;
-  return altitudeM === null ? place : `${place}, ${altitudeM.toFixed(0)} m`;
+  return heightM === null ? place : `${place}, ${heightM.toFixed(0)} m`;
 }
 
 /** Side of the plan, and its margin, in units of the drawing. */
@@ -230,7 +205,7 @@ const SIDE = 260;
 const MARGIN = 30;
 
 /** Where the photographs were taken, seen from above, north up; joined in the order of their times. */
-function Plan({ all }: { all: readonly PhotographFacts[] }) {
+function Plan({ all }: { all: readonly Photograph[] }) {
   const points = planOf(all);
   const range = (values: readonly number[]) => [Math.min(...values), Math.max(...values)] as const;
   const [west, east] = range(points.map((point) => point.east));
