@@ -4,7 +4,7 @@
 //! ```text
 //! math          elementary functions with the same bits on every target
 //! ids           newtypes of views, segments, lines, facets
-//! geometry      points, segments, planes
+//! geometry      points, segments, planes, polygons
 //! plan_index    boxes in plan
 //! json          parameters and options from JSON
 //! execution     parallel maps, shards, progress

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
 
 use super::texture::SurfaceTexture;
-use crate::base::geometry::Plane;
+use crate::base::geometry::{self, Plane, sides};
 use crate::photographs::camera::Camera;
 
 /// Direction towards the sun.
@@ -51,17 +51,9 @@ impl RenderedFace {
         }
     }
 
-    /// Is the point inside the polygon (crossing number)?
+    /// Is the point inside the polygon?
     fn contains(&self, p: &Point2<f64>) -> bool {
-        let mut inside = false;
-        let mut a = self.ring[self.ring.len() - 1];
-        for &b in &self.ring {
-            if (a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x {
-                inside = !inside;
-            }
-            a = b;
-        }
-        inside
+        geometry::contains(sides(&self.ring), p)
     }
 
     /// Diffuse light on the face, 0 to 1.

@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 
 use super::graph::ImageGraph;
 use super::space_corner::{SpaceCorner, SpaceEdge};
-use crate::base::geometry::{Plane, mean_point};
+use crate::base::geometry::{Plane, convex_hull, mean_point};
 use crate::base::ids::ProposalOrigin;
 use crate::base::math::atan2;
 use crate::planes::coplanar::{ImageEvidence, LineEnd, UncertainPlane, log_odds};
-use crate::planes::grouping::{ProposedPlane, convex_hull};
+use crate::planes::grouping::ProposedPlane;
 use crate::planes::half_planes::is_wall;
 
 /// Share of the regions between two edges of a corner that are a face of a roof, where no other

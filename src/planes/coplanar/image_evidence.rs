@@ -9,7 +9,7 @@ use nalgebra::{Point2, Point3};
 use super::hypothesis::relation_nats;
 use crate::base::evidence::ON_LINE;
 use crate::base::evidence::{UncertaintyTable, WindowEvidenceTable};
-use crate::base::geometry::{Plane, Segment3, bounds, covered};
+use crate::base::geometry::{Plane, Segment3, bounds, covered, sides};
 use crate::base::ids::ViewId;
 use crate::base::params::RoofParams;
 use crate::base::plan_index::PlanIndex;
@@ -83,13 +83,12 @@ impl<'s> ImageEvidence<'s> {
 
     /// What the border of a polygon costs, nats, at most 0.
     pub(crate) fn outline(&self, corners: &[Point3<f64>]) -> f64 {
-        let cost = |(a, b): (&Point3<f64>, &Point3<f64>)| {
-            let side = Segment3::new(*a, *b);
+        let cost = |[a, b]: [Point3<f64>; 2]| {
+            let side = Segment3::new(a, b);
             let shown = self.shown(&side);
             -self.border_nats_per_m * side.length() * (1.0 - (1.0 - ON_LINE) * shown)
         };
-        let next = corners.iter().cycle().skip(1);
-        corners.iter().zip(next).map(cost).sum()
+        sides(corners).map(cost).sum()
     }
 
     /// Share of a side along which the views show an edge, 0 to 1: the mean over the better half of

@@ -10,10 +10,10 @@ use nalgebra::Point2;
 
 use super::image_evidence::ImageEvidence;
 use super::uncertain_plane::{UncertainPlane, ends_of};
-use crate::base::geometry::Plane;
+use crate::base::geometry::{Plane, convex_hull};
 use crate::base::ids::LineId;
 use crate::lines::lines3d::Line3d;
-use crate::planes::grouping::{convex_hull, line_neighbours};
+use crate::planes::grouping::line_neighbours;
 use crate::planes::half_planes::is_wall;
 
 /// Lines in one plane.

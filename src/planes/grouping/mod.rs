@@ -38,7 +38,7 @@ pub use plane_group::{Member, PlaneGroup};
 pub(crate) use propagated::{group_propagated, with_propagated};
 pub(crate) use proposals::add_proposals;
 pub use proposed_plane::ProposedPlane;
-pub(crate) use region::{MARGIN, PlanRegion, convex_hull};
+pub(crate) use region::{MARGIN, PlanRegion};
 
 #[cfg(test)]
 pub(crate) use region::region_beside;

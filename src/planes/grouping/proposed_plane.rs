@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
-use crate::base::geometry::{Plane, mean_point};
+use crate::base::geometry::{Plane, mean_point, plan_sides};
 use crate::base::ids::ProposalOrigin;
 use crate::base::params::RoofParams;
 
@@ -21,8 +21,7 @@ pub struct ProposedPlane {
 impl ProposedPlane {
     /// The sides in plan, metres.
     pub fn sides(&self) -> impl Iterator<Item = [Point2<f64>; 2]> {
-        let n = self.ring.len();
-        (0..n).map(move |i| [self.ring[i].xy(), self.ring[(i + 1) % n].xy()])
+        plan_sides(&self.ring)
     }
 
     /// Distance of a position from it in plan, metres; 0 inside.

@@ -2,11 +2,10 @@
 
 use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
-use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 
 use super::plane_group::{GroupingInput, PlaneGroup};
 use super::proposed_plane::ProposedPlane;
-use crate::base::geometry::{Plane, bounds};
+use crate::base::geometry::{Plane, bounds, convex_hull, sides};
 use crate::base::math::{larger, smaller};
 use crate::base::params::RoofParams;
 use crate::lines::lines3d::Side;
@@ -124,8 +123,7 @@ fn hull_span_at(ring: &[Point2<f64>], y: f64) -> [f64; 2] {
     if ring.len() < 3 {
         return [f64::INFINITY, f64::NEG_INFINITY];
     }
-    let next = ring.iter().cycle().skip(1);
-    ring.iter().zip(next).fold(WHOLE_ROW, |span, (a, b)| {
+    sides(ring).fold(WHOLE_ROW, |span, [a, b]| {
         let side = b - a;
         clipped(span, -side.y, side.x * (y - a.y) + side.y * a.x)
     })
@@ -209,35 +207,16 @@ impl PlanRegion {
         if down.norm() < NEARLY_LEVEL {
             return Vec::new();
         }
-        let next = self.hull.iter().cycle().skip(1);
-        let sides = self.hull.iter().zip(next).map(|(a, b)| [*a, *b]);
         let is_level = |[a, b]: &[Point2<f64>; 2]| {
             (b - a).dot(&down).abs() < LEVEL * down.norm() * (b - a).norm()
         };
-        sides.filter(is_level).collect()
+        sides(&self.hull).filter(is_level).collect()
     }
 
     /// Least and largest x and y, metres.
     pub(crate) fn bounds(&self) -> [Point2<f64>; 2] {
         bounds(self.boxes.iter().flat_map(PlanBox::corners))
     }
-}
-
-/// The corners of the convex hull, counter-clockwise; none of points that cannot be triangulated.
-pub(crate) fn convex_hull(points: impl Iterator<Item = Point2<f64>>) -> Vec<Point2<f64>> {
-    let mut triangles = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
-    let inserted = points.map(|p| triangles.insert(spade::Point2::new(p.x, p.y)));
-    if inserted.filter(Result::is_err).count() > 0 {
-        return Vec::new();
-    }
-    let corners = triangles.convex_hull().map(|edge| edge.from().position());
-    let mut ring: Vec<Point2<f64>> = corners.map(|p| Point2::new(p.x, p.y)).collect();
-    let next = ring.iter().cycle().skip(1);
-    let twice = |(a, b): (&Point2<f64>, &Point2<f64>)| (a - ring[0]).perp(&(b - ring[0]));
-    if ring.iter().zip(next).map(twice).sum::<f64>() < 0.0 {
-        ring.reverse();
-    }
-    ring
 }
 
 /// Does a convex ring, in either order, hold a point?

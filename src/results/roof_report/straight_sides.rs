@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Point2, Point3, Vector2};
 
 use super::edges::{STRAIGHT_SINE, key};
+use crate::base::geometry::sides;
 use crate::roofs::model::Facet;
 
 /// Corners in plan, each once.
@@ -25,8 +26,7 @@ impl Corners {
             index: BTreeMap::new(),
         };
         let rings_of = |facet: &'a Facet| {
-            let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-            rings
+            (facet.rings())
                 .map(|ring| ring.iter().map(|p| corners.add(p)).collect())
                 .collect()
         };
@@ -69,12 +69,7 @@ impl Corners {
 
 /// From each corner of rings to the next.
 pub(super) fn ring_pieces(rings: &Rings) -> impl Iterator<Item = [usize; 2]> + '_ {
-    rings.iter().flat_map(|ring| pieces_of(ring))
-}
-
-fn pieces_of(ring: &[usize]) -> impl Iterator<Item = [usize; 2]> + '_ {
-    let next = ring.iter().cycle().skip(1);
-    ring.iter().zip(next).map(|(&p, &q)| [p, q])
+    rings.iter().flat_map(|ring| sides(ring))
 }
 
 /// The straight sides of a building.
@@ -88,8 +83,7 @@ pub(super) struct StraightSides {
 impl StraightSides {
     /// The sides of rings.
     pub(super) fn of<'a>(corners: &Corners, rings: impl Iterator<Item = &'a Vec<usize>>) -> Self {
-        let pieces: BTreeSet<[usize; 2]> =
-            rings.flat_map(|ring| pieces_of(ring)).map(sorted).collect();
+        let pieces: BTreeSet<[usize; 2]> = rings.flat_map(|ring| sides(ring)).map(sorted).collect();
         let mut beside: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
         for &[p, q] in &pieces {
             beside.entry(p).or_default().insert(q);

@@ -6,7 +6,7 @@
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
-use crate::base::geometry::{Plane, mean_point};
+use crate::base::geometry::{Plane, mean_point, plan_sides};
 use crate::base::ids::{BuildingId, FacetId};
 use crate::roofs::model::{
     Building, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
@@ -265,11 +265,11 @@ fn sides_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<Vec<SideUncer
     for (i, ring) in rings.iter().enumerate() {
         let [sigmas, supports] = [sigmas, supports].map(|of| of.get(i).and_then(list));
         let (sigmas, supports) = (sigmas?, supports?);
-        for (k, p) in ring.iter().enumerate() {
+        for (k, ends) in plan_sides(ring).enumerate() {
             let (sigma, support) = (sigmas.get(k)?, supports.get(k)?);
             if !sigma.is_null() {
                 sides.push(SideUncertainty {
-                    ends: [p.xy(), ring[(k + 1) % ring.len()].xy()],
+                    ends,
                     sigma_m: sigma.as_f64()?,
                     support: SideSupport::named(support.as_str()?)?,
                 });

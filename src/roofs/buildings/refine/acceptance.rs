@@ -8,7 +8,7 @@ use crate::base::ids::FacetId;
 use crate::base::params::RefineParams;
 use crate::orienting::scene::Scene;
 use crate::planes::photoconsistency::{PlanGrid, consistency_map};
-use crate::roofs::model::{Facet, Violation, check_invariants, inside};
+use crate::roofs::model::{Facet, Violation, check_invariants};
 use crate::roofs::solids::close_buildings;
 
 /// Why a building is not adjusted.
@@ -164,7 +164,7 @@ impl AcceptanceTest<'_> {
                 continue;
             }
             let p = grid.center(k % grid.width, k / grid.width);
-            if inside(&facet.outer, &p) && !facet.holes.iter().any(|h| inside(h, &p)) {
+            if facet.covers(&p) {
                 sums[0] += weight;
                 sums[1] += weight * f64::from(map.correlation(k));
             }
@@ -185,6 +185,12 @@ fn facets_of(violation: &Violation) -> Vec<FacetId> {
     }
 }
 
+/// Did any corner move by more than this, metres?
+fn moved(old: &Facet, new: &Facet, least_m: f64) -> bool {
+    old.outer.len() != new.outer.len()
+        || (old.outer.iter().zip(&new.outer)).any(|(p, q)| (p - q).norm() > least_m)
+}
+
 /// Plan area of a facet, m^2.
 fn plan_area(facet: &Facet) -> f64 {
     let doubled = |ring: &[nalgebra::Point3<f64>]| {
@@ -196,10 +202,4 @@ fn plan_area(facet: &Facet) -> f64 {
             .sum::<f64>()
     };
     0.5 * (doubled(&facet.outer) + facet.holes.iter().map(|h| doubled(h)).sum::<f64>())
-}
-
-/// Did any corner move by more than this, metres?
-fn moved(old: &Facet, new: &Facet, least_m: f64) -> bool {
-    old.outer.len() != new.outer.len()
-        || (old.outer.iter().zip(&new.outer)).any(|(p, q)| (p - q).norm() > least_m)
 }
