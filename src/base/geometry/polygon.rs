@@ -98,9 +98,9 @@ pub fn clip(ring: &[Point3<f64>], side: &dyn Fn(&Point3<f64>) -> f64) -> Vec<Poi
 }
 
 /// The corners of the convex hull, counter-clockwise; none of points that cannot be triangulated.
-pub fn convex_hull(points: impl Iterator<Item = Point2<f64>>) -> Vec<Point2<f64>> {
+pub fn convex_hull(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
     let mut triangles = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
-    let inserted = points.map(|p| triangles.insert(spade::Point2::new(p.x, p.y)));
+    let inserted = (points.iter()).map(|p| triangles.insert(spade::Point2::new(p.x, p.y)));
     if inserted.filter(Result::is_err).count() > 0 {
         return Vec::new();
     }
@@ -312,7 +312,9 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn area_depends_on_the_way_that_a_ring_runs_alone(ring in star(), by in 1..9usize, angle in 0.0..TAU) {
+        fn area_depends_on_the_way_that_a_ring_runs_alone(
+            ring in star(), by in 1..9usize, angle in 0.0..TAU,
+        ) {
             let expected = area(&ring);
             prop_assert!(expected > 0.0);
             let mut other = ring.clone();
@@ -341,7 +343,7 @@ mod tests {
 
         #[test]
         fn a_hull_holds_all_points(points in prop::collection::vec(place(), 3..30)) {
-            let hull = convex_hull(points.iter().copied());
+            let hull = convex_hull(&points);
             prop_assert!(points.iter().all(|p| depth(sides(&hull), p) > -1e-9));
             prop_assert!(hull.iter().all(|p| points.contains(p)));
             let turns_left = |i: usize| {

@@ -225,7 +225,7 @@ impl PlaneSpace<'_> {
     fn plane(&self, sectors: &[Sector], fused: &Fused) -> Option<CornerPlane> {
         let plane = fused.plane.plane();
         let points = fused.sectors.iter().flat_map(|&i| &sectors[i].points);
-        let in_plan = convex_hull(points.map(|end| end.at.xy()));
+        let in_plan = convex_hull(&points.map(|end| end.at.xy()).collect::<Vec<_>>());
         (in_plan.len() >= 3).then_some(())?;
         let polygon: Vec<Point3<f64>> = in_plan.iter().map(|p| plane.lift(p.x, p.y)).collect();
         let mut regions: Vec<[u32; 2]> = fused.sectors.iter().map(|&i| sectors[i].id).collect();

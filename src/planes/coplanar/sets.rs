@@ -67,7 +67,8 @@ impl<'a> LineSpace<'a> {
     /// The hull of the ends of some lines in plan, counter-clockwise.
     pub(super) fn hull(&self, lines: &[LineId]) -> Vec<Point2<f64>> {
         let segments = lines.iter().map(|&l| &self.line(l).segment);
-        convex_hull(segments.flat_map(|s| [s.p0.xy(), s.p1.xy()]))
+        let ends = segments.flat_map(|s| [s.p0.xy(), s.p1.xy()]);
+        convex_hull(&ends.collect::<Vec<_>>())
     }
 
     /// Two lines as a set: the plane of three ends says where the fourth should be.

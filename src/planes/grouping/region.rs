@@ -163,10 +163,8 @@ impl PlanRegion {
             .chain(group.proposed(input).filter_map(PlanBox::around))
             .collect();
         let lines = (group.members.iter()).map(|m| &input.lines[m.line.index()].segment);
-        Self::of(
-            boxes,
-            convex_hull(lines.flat_map(|l| [l.p0.xy(), l.p1.xy()])),
-        )
+        let ends = lines.flat_map(|l| [l.p0.xy(), l.p1.xy()]);
+        Self::of(boxes, convex_hull(&ends.collect::<Vec<_>>()))
     }
 
     fn of(boxes: Vec<PlanBox>, hull: Vec<Point2<f64>>) -> Self {
@@ -343,7 +341,7 @@ mod tests {
     #[test]
     fn lines_one_behind_the_other_have_nothing_between_them() {
         let on_a_line = [0.0, 1.0, 5.0, 9.0].map(|t| Point2::new(t, 2.0 * t));
-        let hull = convex_hull(on_a_line.into_iter());
+        let hull = convex_hull(&on_a_line);
         for p in [
             Point2::new(3.0, 6.0),
             Point2::new(3.0, 6.5),
