@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::plane_group::{GroupingInput, PlaneGroup};
 use super::proposed_plane::ProposedPlane;
-use crate::base::geometry::{Plane, bounds, convex_hull, sides};
+use crate::base::geometry::{Plane, bounds, contains, convex_hull, sides, span};
 use crate::base::math::{larger, smaller};
 use crate::base::params::RoofParams;
 use crate::lines::lines3d::Side;
@@ -118,17 +118,6 @@ fn clipped([first, last]: [f64; 2], a: f64, b: f64) -> [f64; 2] {
     }
 }
 
-/// The part of a row inside a ring that is convex and counter-clockwise.
-fn hull_span_at(ring: &[Point2<f64>], y: f64) -> [f64; 2] {
-    if ring.len() < 3 {
-        return [f64::INFINITY, f64::NEG_INFINITY];
-    }
-    sides(ring).fold(WHOLE_ROW, |span, [a, b]| {
-        let side = b - a;
-        clipped(span, -side.y, side.x * (y - a.y) + side.y * a.x)
-    })
-}
-
 impl PlanRegion {
     /// The region of a group: `depth` away from each supporting line on the side of its half-plane
     /// (both sides for a line without one), a little beyond on the other side and over the ends.
@@ -188,13 +177,13 @@ impl PlanRegion {
             let d = p - b.start;
             let (t, u) = (d.dot(&b.along), b.along.x * d.y - b.along.y * d.x);
             t >= -b.ends && t <= b.length + b.ends && u <= b.left && u >= -b.right
-        }) || is_inside(&self.hull, p)
+        }) || contains(sides(&self.hull), p)
     }
 
     /// What the region holds of the row of the plan at `y`, metres.
     pub(crate) fn row(&self, y: f64) -> RegionRow {
         let boxes = self.boxes.iter().map(|b| b.span_at(y));
-        let spans = boxes.chain(std::iter::once(hull_span_at(&self.hull, y)));
+        let spans = boxes.chain(span(sides(&self.hull), y));
         RegionRow(spans.filter(|[first, last]| first <= last).collect())
     }
 
@@ -215,16 +204,6 @@ impl PlanRegion {
     pub(crate) fn bounds(&self) -> [Point2<f64>; 2] {
         bounds(self.boxes.iter().flat_map(PlanBox::corners))
     }
-}
-
-/// Does a convex ring, in either order, hold a point?
-fn is_inside(ring: &[Point2<f64>], p: &Point2<f64>) -> bool {
-    let side = |i: usize| {
-        let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-        (b - a).perp(&(p - a))
-    };
-    !ring.is_empty()
-        && ((0..ring.len()).all(|i| side(i) > 0.0) || (0..ring.len()).all(|i| side(i) < 0.0))
 }
 
 /// What a plane may cover to both sides of a line in it.
@@ -347,7 +326,7 @@ mod tests {
             Point2::new(3.0, 6.5),
             Point2::new(3.0, 5.5),
         ] {
-            assert!(!is_inside(&hull, &p));
+            assert!(!contains(sides(&hull), &p));
         }
     }
 }
