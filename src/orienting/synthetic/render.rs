@@ -31,11 +31,7 @@ impl RenderedFace {
     /// The polygon through these corners, counter-clockwise seen from its lit side.
     pub(crate) fn new(corners: &[Point3<f64>], surface: SurfaceTexture) -> Self {
         let u = (corners[1] - corners[0]).normalize();
-        // Newell's sum holds for polygons that are not convex as well.
-        let normal = (0..corners.len()).fold(Vector3::zeros(), |sum, i| {
-            let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
-            sum + p.coords.cross(&q.coords)
-        });
+        let normal = geometry::vector_area(corners.iter().copied());
         let plane = Plane::from_point_normal(&corners[0], &normal).expect("a face has an area");
         let axes = [u, plane.normal.cross(&u)];
         let ring = corners
