@@ -173,7 +173,7 @@ fn files_of_other_programs_hold_the_planted_ground_and_house() {
         let [house] = &register.footprints[..] else {
             panic!("{name}: {}", register.footprints.len());
         };
-        assert!((house.area() - area).abs() < 1e-6, "{name}");
+        assert!((house.outline.signed_area() - area).abs() < 1e-6, "{name}");
     }
 }
 

@@ -58,20 +58,13 @@ impl Footprint {
         Ok(Self {
             name: outline.name,
             bounds: bounds(outer.iter().copied()),
-            outline: Polygon { rings },
+            outline: Polygon { rings }.oriented(),
         })
     }
 
     /// Its bounding box: the south-western and the north-eastern corner.
     pub fn bounds(&self) -> [Point2<f64>; 2] {
         self.bounds
-    }
-
-    /// Area without its holes, square metres.
-    pub fn area(&self) -> f64 {
-        let area = |ring: &Vec<Point2<f64>>| signed_area(ring.iter().copied()).abs();
-        let areas: Vec<f64> = self.outline.rings.iter().map(area).collect();
-        areas[0] - areas[1..].iter().sum::<f64>()
     }
 }
 

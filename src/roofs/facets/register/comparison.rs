@@ -187,7 +187,7 @@ impl RegisterEvidence<'_> {
             .filter(|&k| footprint.outline.contains(&(place(k) - moved)))
             .collect();
         let sample_m2 = self.grid.step * self.grid.step;
-        if (inside.len() as f64) * sample_m2 < SHOWN * footprint.area() {
+        if (inside.len() as f64) * sample_m2 < SHOWN * footprint.outline.signed_area() {
             return None;
         }
         let count = |of: &dyn Fn(usize) -> bool| inside.iter().filter(|k| of(**k)).count() as f64;
