@@ -50,21 +50,6 @@ impl Corners {
     pub(super) fn at(&self, corner: usize) -> Point2<f64> {
         self.positions[corner]
     }
-
-    /// Area of rings, and its first moment about a place.
-    pub(super) fn area_and_moment(
-        &self,
-        rings: &Rings,
-        about: &Point2<f64>,
-    ) -> (f64, Vector2<f64>) {
-        let (mut area, mut moment) = (0.0, Vector2::zeros());
-        for ends in ring_pieces(rings) {
-            let [p, q] = ends.map(|corner| self.at(corner) - about);
-            area += p.perp(&q) / 2.0;
-            moment += (p + q) * p.perp(&q) / 6.0;
-        }
-        (area, moment)
-    }
 }
 
 /// From each corner of rings to the next.

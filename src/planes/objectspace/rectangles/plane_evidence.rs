@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector2};
 
 use super::occluding_solids::OccludingSolid;
 use crate::base::evidence::WindowEvidenceTable;
-use crate::base::geometry::{Plane, bounds, plan_sides, span};
+use crate::base::geometry::{Plane, bounds, plan_sides, signed_area, span};
 use crate::base::math::larger;
 use crate::orienting::scene::Scene;
 use crate::planes::photoconsistency::{
@@ -13,13 +13,8 @@ use crate::planes::photoconsistency::{
 };
 
 /// Signed area in plan, square metres.
-pub(crate) fn area_2d(ring: &[Point3<f64>]) -> f64 {
-    (0..ring.len())
-        .map(|i| {
-            let (p, q) = (&ring[i], &ring[(i + 1) % ring.len()]);
-            0.5 * (p.x * q.y - p.y * q.x)
-        })
-        .sum()
+pub(super) fn plan_area(ring: &[Point3<f64>]) -> f64 {
+    signed_area(ring.iter().map(Point3::xy))
 }
 
 /// Compares the views on one plane and on planes beside it.
@@ -212,7 +207,7 @@ fn shrunk(ring: &[Point3<f64>], by: f64) -> Option<Vec<Point3<f64>>> {
         let j = (i + 1) % n;
         (moved[j] - moved[i]).xy().dot(&(ring[j] - ring[i]).xy()) > 0.0
     });
-    (inwards && area_2d(&moved) > 0.15 * area_2d(ring)).then_some(moved)
+    (inwards && plan_area(&moved) > 0.15 * plan_area(ring)).then_some(moved)
 }
 
 #[cfg(test)]
@@ -227,7 +222,7 @@ mod tests {
                 .to_vec()
         };
         let core = shrunk(&ring(6.0), 1.0).unwrap();
-        assert!((area_2d(&core) - 28.0).abs() < 1e-9);
+        assert!((plan_area(&core) - 28.0).abs() < 1e-9);
         assert_eq!(span(plan_sides(&core), 3.0), Some([1.0, 8.0]));
         assert!(shrunk(&ring(1.5), 1.0).is_none());
     }

@@ -7,7 +7,7 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::reported::ReportedModel;
 use super::svg::{Drawing, place_inside};
-use crate::base::geometry::{Polygon, bounds, sides};
+use crate::base::geometry::{Polygon, bounds, signed_area};
 use crate::base::math::{atan2, sin_cos};
 use crate::roofs::model::{Building, Surface};
 
@@ -165,10 +165,7 @@ fn back_to_front(faces: &[SeenFace], viewer: &Viewer) -> Vec<usize> {
 /// The middle of the largest part that two pictures have in common.
 fn common_place(a: &Polygon, b: &Polygon) -> Option<Point2<f64>> {
     let common = a.and(b);
-    let area = |ring: &Vec<Point2<f64>>| {
-        let twice = sides(ring).map(|[p, q]| p.x * q.y - p.y * q.x);
-        twice.sum::<f64>().abs() / 2.0
-    };
+    let area = |ring: &Vec<Point2<f64>>| signed_area(ring.iter().copied());
     let largest = (common.rings.iter()).max_by(|p, q| area(p).total_cmp(&area(q)))?;
     (area(largest) >= LEAST_OVERLAP_M2).then(|| place_inside(&largest.clone().into()))
 }

@@ -6,7 +6,7 @@
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
-use crate::base::geometry::{Plane, mean_point, plan_sides};
+use crate::base::geometry::{Plane, mean_point, plan_sides, vector_area};
 use crate::base::ids::{BuildingId, FacetId};
 use crate::roofs::model::{
     Building, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
@@ -208,12 +208,8 @@ fn ring_of(ring: &Value, vertices: &[Point3<f64>]) -> Option<Vec<Point3<f64>>> {
 /// The plane of a roof, from the vector area of its rings through their middle; `None` where it
 /// does not look up.
 fn plane_of(rings: &[Vec<Point3<f64>>]) -> Option<Plane> {
-    let mut area = Vector3::zeros();
-    for ring in rings {
-        for i in 1..ring.len() - 1 {
-            area += (ring[i] - ring[0]).cross(&(ring[i + 1] - ring[0])) / 2.0;
-        }
-    }
+    let areas = rings.iter().map(|ring| vector_area(ring.iter().copied()));
+    let area: Vector3<f64> = areas.sum();
     let looks_up = |plane: &Plane| plane.normal.z > LEAST_NORMAL_Z;
     let middle = mean_point(&rings[0]);
     let plane = Plane::from_point_normal(&middle, &area).filter(looks_up);
