@@ -2,8 +2,9 @@
 //!
 //! A ring is its corners in order; the last one is not the first one again. Every area is the z of
 //! one sum of triangles on the first corner, so that coordinates far from the origin lose nothing.
-//! Every answer to "is it inside" is that of one crossing test (even-odd rule): a side has its lower
-//! end and not its upper one, so that a place on a side that two polygons share lies in one of them.
+//! Every answer to "is it inside" is that of one crossing test (even-odd rule): a side has its
+//! lower end and not its upper one, so that a place on a side that two polygons share lies in one
+//! of them.
 //!
 //! Booleans are i_overlay's, of one type in the whole crate, and the hull is spade's: every further
 //! type would be compiled anew (docs/decisions/0003).

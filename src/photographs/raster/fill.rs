@@ -2,8 +2,8 @@
 
 use crate::base::geometry::{Polygon, crossing};
 
-/// Sets the pixels of a mask (`width * height`) whose centres lie inside a polygon. Positions are in
-/// pixels, y down, pixel (0, 0) has its centre at (0.5, 0.5).
+/// Sets the pixels of a mask (`width * height`) whose centres lie inside a polygon. Positions are
+/// in pixels, y down, pixel (0, 0) has its centre at (0.5, 0.5).
 pub(crate) fn mark_inside(polygon: &Polygon, width: usize, height: usize, mask: &mut [bool]) {
     let [low, high] = polygon.bounds();
     let first = (low.y - 0.5).ceil().max(0.0) as usize;
