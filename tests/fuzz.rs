@@ -401,7 +401,7 @@ fn read_known(files: &[InputFile]) {
                 register
                     .footprints
                     .iter()
-                    .all(|f| f.depth(&place).is_finite())
+                    .all(|f| f.outline.depth(&place).is_finite())
             );
         }
         check(register.map(|_| ()));

@@ -9,10 +9,10 @@ mod common;
 use common::golden;
 use common::scenes::{SIZE_PX, scenes};
 use common::solid_checks;
-use nalgebra::{Point2, Point3};
+use nalgebra::Point3;
 use ridgeline::base::execution::progress::silent;
 use ridgeline::base::execution::shard::MergedShards;
-use ridgeline::base::geometry::{Plane, Segment3};
+use ridgeline::base::geometry::{Plane, Segment3, contains, plan_sides};
 use ridgeline::base::ids::ProposalOrigin;
 use ridgeline::base::params::{Method, Params, Source};
 use ridgeline::lines::lines3d::{Line3d, LineOrigin};
@@ -539,7 +539,7 @@ fn distance(segment: &Segment3, p: &Point3<f64>) -> f64 {
 /// Does a facet lie over the middle of the true one, in its plane?
 fn is_found(plane: &Plane, outer: &[Point3<f64>], facets: &[Facet]) -> bool {
     let middle = inner_point(outer);
-    let covers = |f: &&Facet| contains(&f.outer, &middle.xy());
+    let covers = |f: &&Facet| f.covers(&middle.xy());
     facets
         .iter()
         .filter(covers)
@@ -572,15 +572,6 @@ fn inner_point(ring: &[Point3<f64>]) -> Point3<f64> {
     });
     std::iter::once(Point3::from(mean))
         .chain(corners)
-        .find(|p| contains(ring, &p.xy()))
+        .find(|p| contains(plan_sides(ring), &p.xy()))
         .expect("every polygon has an ear")
-}
-
-/// Even-odd rule in plan.
-fn contains(ring: &[Point3<f64>], p: &Point2<f64>) -> bool {
-    let edges = ring.iter().zip(ring.iter().cycle().skip(1));
-    let crossings = edges.filter(|(a, b)| {
-        (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
-    });
-    crossings.count() % 2 == 1
 }

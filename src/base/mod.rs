@@ -5,7 +5,7 @@
 //! math          elementary functions with the same bits on every target
 //! least_squares sums of squared residuals, robust, and the steps that minimise them
 //! ids           newtypes of views, segments, lines, facets
-//! geometry      points, segments, planes
+//! geometry      points, segments, planes, polygons
 //! plan_index    boxes in plan
 //! json          parameters and options from JSON
 //! execution     parallel maps, shards, progress

@@ -1,8 +1,8 @@
 //! For tests: reproducible random numbers, facets and lines.
 
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Matrix3, Point3};
 
-use crate::base::geometry::{Plane, Segment3};
+use crate::base::geometry::{Plane, Segment3, vector_area};
 use crate::base::ids::BuildingId;
 use crate::lines::lines3d::Line3d;
 use crate::roofs::model::Facet;
@@ -19,10 +19,7 @@ pub(crate) fn uniform(seed: u32) -> impl FnMut() -> f64 {
 
 /// A facet over a ring of corners that lie in one plane.
 pub(crate) fn facet(ring: &[Point3<f64>]) -> Facet {
-    let normal = (0..ring.len()).fold(Vector3::zeros(), |sum, i| {
-        let (p, q) = (ring[i] - ring[0], ring[(i + 1) % ring.len()] - ring[0]);
-        sum + p.cross(&q)
-    });
+    let normal = vector_area(ring.iter().copied());
     Facet {
         building: BuildingId(0),
         plane: Plane::from_point_normal(&ring[0], &normal).expect("an area"),

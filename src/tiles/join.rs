@@ -3,9 +3,6 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use i_overlay::core::fill_rule::FillRule;
-use i_overlay::core::overlay_rule::OverlayRule;
-use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +11,7 @@ use super::fields;
 use super::model_parts::{append, middle, moved, moved_plane, walls_of};
 use super::tile::Cell;
 use crate::base::evidence::Candidates;
-use crate::base::geometry::Segment2;
+use crate::base::geometry::{Polygon, Segment2};
 use crate::base::ids::{HalfPlaneId, LineId, ViewId};
 use crate::base::params::TextureParams;
 use crate::lines::lines2d::ImageSegment;
@@ -233,34 +230,22 @@ fn choose(parts: &[CellPart]) -> Vec<Vec<usize>> {
 fn are_same(a: (&Building, Vector3<f64>), b: (&Building, Vector3<f64>)) -> bool {
     let by = a.1 - b.1;
     let (a, b) = (footprint(a.0, &Vector3::zeros()), footprint(b.0, &by));
-    let shared: Vec<Vec<Vec<[f64; 2]>>> =
-        a.overlay_as::<i64>(&b, OverlayRule::Intersect, FillRule::NonZero);
-    let shared: f64 = shared.iter().flatten().map(|ring| area(ring)).sum();
-    let size = |rings: &[Vec<[f64; 2]>]| rings.iter().map(|ring| area(ring)).sum::<f64>().abs();
-    shared.abs() > SAME_BUILDING * size(&a).min(size(&b))
+    let size = |polygon: &Polygon| polygon.signed_area().abs();
+    size(&a.and(&b)) > SAME_BUILDING * size(&a).min(size(&b))
 }
 
 /// The ground rings of a building in plan, in a frame whose origin lies `by` further; outer rings
 /// and holes run opposite ways.
-fn footprint(building: &Building, by: &Vector3<f64>) -> Vec<Vec<[f64; 2]>> {
+fn footprint(building: &Building, by: &Vector3<f64>) -> Polygon {
     let solid = &building.solid;
-    let corner = |&i: &u32| {
-        let p: Point3<f64> = solid.vertices[i as usize] - by;
-        [p.x, p.y]
-    };
+    let corner = |&i: &u32| (solid.vertices[i as usize] - by).xy();
     let grounds = solid.faces.iter().filter(|f| f.surface == Surface::Ground);
-    grounds
-        .flat_map(|f| &f.rings)
-        .map(|ring| ring.iter().map(corner).collect())
-        .collect()
-}
-
-fn area(ring: &[[f64; 2]]) -> f64 {
-    let next = ring.iter().cycle().skip(1);
-    ring.iter()
-        .zip(next)
-        .map(|(a, b)| 0.5 * (a[0] * b[1] - b[0] * a[1]))
-        .sum()
+    let rings = grounds.flat_map(|f| &f.rings);
+    Polygon {
+        rings: rings
+            .map(|ring| ring.iter().map(corner).collect())
+            .collect(),
+    }
 }
 
 /// Puts the atlases of the parts that have buildings into one.

@@ -6,16 +6,12 @@ use std::io::Cursor;
 use laz::laszip::LasZipCompressor;
 use laz::{LazItemRecordBuilder, LazVlr, LazVlrBuilder};
 use nalgebra::{Point2, Point3};
+use ridgeline::base::geometry::{contains, sides};
 use ridgeline::orienting::synthetic::SyntheticTruth;
 
 /// Does a ring hold a place?
 pub fn is_inside(ring: &[Point2<f64>], p: &Point2<f64>) -> bool {
-    let sides = (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()]));
-    sides.fold(false, |inside, (a, b)| {
-        let crosses =
-            (a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x;
-        inside != crosses
-    })
+    contains(sides(ring), p)
 }
 
 /// Corners in plan.

@@ -39,11 +39,10 @@ fn sides_of(facet: &Facet) -> Vec<SideUncertainty> {
         SideSupport::Planes,
         SideSupport::Nothing,
     ];
-    let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-    let pieces = rings.flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
-    (pieces.zip(supports.into_iter().cycle()))
-        .map(|((p, q), support)| SideUncertainty {
-            ends: [p.xy(), q.xy()],
+    let plan = facet.plan();
+    (plan.sides().zip(supports.into_iter().cycle()))
+        .map(|(ends, support)| SideUncertainty {
+            ends,
             sigma_m: 0.02,
             support,
         })

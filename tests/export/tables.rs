@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Vector3;
+use nalgebra::{Point2, Vector3};
+use ridgeline::base::geometry::signed_area;
 use ridgeline::base::ids::LineId;
 use ridgeline::lines::lines3d::LineContradiction;
 use ridgeline::roofs::model::Surface;
@@ -76,12 +77,7 @@ fn footprints_read_back_with_the_plan_area() {
     let scene = scene();
     let ring_area = |ring: &Vec<geojson::Position>| -> f64 {
         assert_eq!(ring.first(), ring.last(), "rings are closed");
-        ring.windows(2)
-            .map(|e| {
-                let [a, b] = [0, 1].map(|i| [e[i][0] - ORIGIN.x, e[i][1] - ORIGIN.y]);
-                0.5 * (a[0] * b[1] - b[0] * a[1])
-            })
-            .sum()
+        signed_area(ring.iter().map(|p| Point2::new(p[0], p[1])))
     };
     for (name, model, _) in planted_models() {
         let files = files_of(&scene, &model);

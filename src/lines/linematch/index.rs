@@ -3,8 +3,7 @@
 
 use nalgebra::Point2;
 
-use crate::base::geometry::Segment2;
-use crate::base::math::smaller;
+use crate::base::geometry::{Segment2, depth, sides};
 
 /// Side of a cell, pixels. Assumption: about half the length of a typical segment, so that a
 /// segment lies in few cells and a cell holds few segments.
@@ -76,7 +75,7 @@ impl SegmentIndex {
                 );
                 let cell = row * self.columns + column;
                 let (start, end) = (self.starts[cell], self.starts[cell + 1]);
-                if start < end && distance_to_quad(quad, &centre) <= reach {
+                if start < end && is_near_quad(quad, &centre, reach) {
                     found.extend_from_slice(&self.segments[start as usize..end as usize]);
                 }
             }
@@ -97,20 +96,9 @@ fn cell_of(x: f64, cells: usize) -> usize {
     ((x / CELL_PX).max(0.0) as usize).min(cells - 1)
 }
 
-/// Distance of a point from a quadrilateral; zero inside.
-fn distance_to_quad(quad: &[Point2<f64>; 4], p: &Point2<f64>) -> f64 {
-    let mut inside = false;
-    let mut nearest = f64::INFINITY;
-    for i in 0..4 {
-        let (a, b) = (quad[i], quad[(i + 1) % 4]);
-        if (a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x {
-            inside = !inside;
-        }
-        let d = b - a;
-        let t = ((p - a).dot(&d) / d.norm_squared().max(1e-12)).clamp(0.0, 1.0);
-        nearest = smaller(nearest, (p - (a + d * t)).norm_squared());
-    }
-    if inside { 0.0 } else { nearest.sqrt() }
+/// Is a point inside a quadrilateral, or this near to it?
+fn is_near_quad(quad: &[Point2<f64>; 4], p: &Point2<f64>, reach: f64) -> bool {
+    depth(sides(quad), p) >= -reach
 }
 
 #[cfg(test)]
@@ -135,7 +123,7 @@ mod tests {
             let found = index.near_quad(&quad, 2.0);
             for (id, s) in segments.iter().enumerate() {
                 let touches = (0..=200)
-                    .any(|i| distance_to_quad(&quad, &s.at(f64::from(i) / 200.0)) <= 2.0);
+                    .any(|i| is_near_quad(&quad, &s.at(f64::from(i) / 200.0), 2.0));
                 prop_assert!(!touches || found.contains(&(id as u32)));
             }
         }

@@ -347,11 +347,11 @@ fn planted_footprints_are_recovered_in_the_systems_of_files() {
         };
         assert_eq!(footprint.name, "h1");
         assert!(
-            (footprint.area() - 96.0).abs() < 1e-3,
+            (footprint.outline.signed_area() - 96.0).abs() < 1e-3,
             "{}",
-            footprint.area()
+            footprint.outline.signed_area()
         );
-        let depth = |x, y| footprint.depth(&Point2::new(x, y));
+        let depth = |x, y| footprint.outline.depth(&Point2::new(x, y));
         assert!((depth(3.0, 0.0) - 2.0).abs() < 1e-4);
         assert!((depth(0.0, 7.0) + 2.0).abs() < 1e-4);
         assert!((depth(0.5, 0.0) + 0.5).abs() < 1e-4, "in the hole");
@@ -369,8 +369,8 @@ fn planted_footprints_are_recovered_in_the_systems_of_files() {
     let file = InputFile::new("a.json", files[3].clone().into_bytes());
     let found = Register::read(&file, &place, Vector3::zeros(), 0.5, &mut Vec::new()).unwrap();
     // The scale of the grid there is 0.99966.
-    assert!((found.footprints[0].area() - 96.0 / (0.99966 * 0.99966)).abs() < 0.02);
-    assert!((found.footprints[0].depth(&Point2::new(3.0, 0.0)) - 2.0).abs() < 0.05);
+    assert!((found.footprints[0].outline.signed_area() - 96.0 / (0.99966 * 0.99966)).abs() < 0.02);
+    assert!((found.footprints[0].outline.depth(&Point2::new(3.0, 0.0)) - 2.0).abs() < 0.05);
 }
 
 /// A box whose bottom is called a ground surface, or is only the lowest.
@@ -395,7 +395,7 @@ fn footprints_of_city_json_are_its_ground_surfaces_or_the_lowest_ones() {
         let (found, _) = register(&json, &UTM).unwrap();
         assert_eq!(found.footprints.len(), 1);
         assert_eq!(found.footprints[0].name, "b7");
-        assert!((found.footprints[0].depth(&Point2::new(0.0, 3.0)) - 2.0).abs() < 1e-6);
+        assert!((found.footprints[0].outline.depth(&Point2::new(0.0, 3.0)) - 2.0).abs() < 1e-6);
     }
 }
 

@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use super::render::RenderedFace;
 use super::texture::SurfaceTexture;
 use super::truth::SyntheticTruth;
-use crate::base::geometry::Segment3;
+use crate::base::geometry::{Segment3, sides};
 use crate::base::math;
 
 /// A house on its ground, ready to render, and what a reconstruction should find.
@@ -292,12 +292,7 @@ fn rotated(azimuth_deg: f64, [x, y]: [f64; 2]) -> [f64; 2] {
 fn edges(corners: &[Point3<f64>], facets: &[(&[usize], SurfaceTexture)]) -> Vec<Segment3> {
     let mut sides: Vec<[usize; 2]> = facets
         .iter()
-        .flat_map(|(ring, _)| {
-            (0..ring.len()).map(|i| {
-                let (p, q) = (ring[i], ring[(i + 1) % ring.len()]);
-                [p.min(q), p.max(q)]
-            })
-        })
+        .flat_map(|(ring, _)| sides(ring).map(|[p, q]| [p.min(q), p.max(q)]))
         .collect();
     sides.sort();
     sides.dedup();
@@ -311,10 +306,8 @@ fn edges(corners: &[Point3<f64>], facets: &[(&[usize], SurfaceTexture)]) -> Vec<
 /// Equal slopes make the roof equally high over all footprint corners.
 fn walls(place: Placement, footprint: &[([f64; 2], bool)], ridge: f64) -> Vec<RenderedFace> {
     let top = place.eave_z + SLOPE * place.overhang;
-    (0..footprint.len())
-        .map(|i| {
-            let ([px, py], gabled) = footprint[i];
-            let ([qx, qy], _) = footprint[(i + 1) % footprint.len()];
+    (sides(footprint).enumerate())
+        .map(|(i, [([px, py], gabled), ([qx, qy], _)])| {
             let mut ring = vec![
                 place.world([px, py, GROUND_Z]),
                 place.world([qx, qy, GROUND_Z]),

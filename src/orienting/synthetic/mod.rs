@@ -223,6 +223,7 @@ fn oblique_cameras(size: u32) -> Vec<(String, Camera)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::geometry::{Segment3, sides, vector_area};
     use nalgebra::Point2;
 
     #[test]
@@ -249,19 +250,13 @@ mod tests {
             assert_eq!((truth.facets.len(), truth.edges.len()), (facets, edges));
             for (plane, ring) in &truth.facets {
                 assert!(plane.normal.z > 0.5);
-                let mut area = 0.0;
-                for (i, p) in ring.iter().enumerate() {
-                    let q = &ring[(i + 1) % ring.len()];
-                    assert!(plane.signed_distance(p).abs() < 1e-9);
-                    assert!(
-                        truth
-                            .edges
-                            .iter()
-                            .any(|e| { e.line_distance(p) < 1e-9 && e.line_distance(q) < 1e-9 })
-                    );
-                    area += p.x * q.y - q.x * p.y;
+                for ends in sides(ring) {
+                    assert!(plane.signed_distance(&ends[0]).abs() < 1e-9);
+                    let has_side = |e: &Segment3| ends.iter().all(|p| e.line_distance(p) < 1e-9);
+                    assert!(truth.edges.iter().any(has_side));
                 }
-                assert!(area > 0.0, "counter-clockwise from above");
+                let area = vector_area(ring.iter().copied());
+                assert!(area.z > 0.0, "counter-clockwise from above");
             }
         }
     }

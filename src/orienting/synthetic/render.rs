@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
 
 use super::texture::SurfaceTexture;
-use crate::base::geometry::Plane;
+use crate::base::geometry::{self, Plane, sides};
 use crate::photographs::camera::Camera;
 
 /// Direction towards the sun.
@@ -31,11 +31,7 @@ impl RenderedFace {
     /// The polygon through these corners, counter-clockwise seen from its lit side.
     pub(crate) fn new(corners: &[Point3<f64>], surface: SurfaceTexture) -> Self {
         let u = (corners[1] - corners[0]).normalize();
-        // Newell's sum holds for polygons that are not convex as well.
-        let normal = (0..corners.len()).fold(Vector3::zeros(), |sum, i| {
-            let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
-            sum + p.coords.cross(&q.coords)
-        });
+        let normal = geometry::vector_area(corners.iter().copied());
         let plane = Plane::from_point_normal(&corners[0], &normal).expect("a face has an area");
         let axes = [u, plane.normal.cross(&u)];
         let ring = corners
@@ -51,17 +47,9 @@ impl RenderedFace {
         }
     }
 
-    /// Is the point inside the polygon (crossing number)?
+    /// Is the point inside the polygon?
     fn contains(&self, p: &Point2<f64>) -> bool {
-        let mut inside = false;
-        let mut a = self.ring[self.ring.len() - 1];
-        for &b in &self.ring {
-            if (a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x {
-                inside = !inside;
-            }
-            a = b;
-        }
-        inside
+        geometry::contains(sides(&self.ring), p)
     }
 
     /// Diffuse light on the face, 0 to 1.

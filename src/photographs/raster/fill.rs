@@ -1,32 +1,19 @@
 //! Filling on small rasters: polygons into masks, gaps with smooth colours.
 
+use crate::base::geometry::{Polygon, crossing};
 use glam::Vec3;
-use nalgebra::Point2;
 
-/// Sets the pixels of a mask (`width * height`) whose centres lie inside the rings (even-odd).
-/// Positions are in pixels, y down, pixel (0, 0) has its centre at (0.5, 0.5).
-pub(crate) fn mark_inside(
-    rings: &[Vec<Point2<f64>>],
-    width: usize,
-    height: usize,
-    mask: &mut [bool],
-) {
-    let ys = rings.iter().flatten().map(|p| p.y);
-    let (low, high) = ys.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
-    let first = (low - 0.5).ceil().max(0.0) as usize;
-    let end = ((high + 0.5).max(0.0) as usize).min(height);
+/// Sets the pixels of a mask (`width * height`) whose centres lie inside a polygon. Positions are
+/// in pixels, y down, pixel (0, 0) has its centre at (0.5, 0.5).
+pub(crate) fn mark_inside(polygon: &Polygon, width: usize, height: usize, mask: &mut [bool]) {
+    let [low, high] = polygon.bounds();
+    let first = (low.y - 0.5).ceil().max(0.0) as usize;
+    let end = ((high.y + 0.5).max(0.0) as usize).min(height);
     let mut crossings = Vec::new();
     for row in first..end {
         let y = row as f64 + 0.5;
         crossings.clear();
-        for ring in rings {
-            for (i, p) in ring.iter().enumerate() {
-                let q = &ring[(i + 1) % ring.len()];
-                if (p.y > y) != (q.y > y) {
-                    crossings.push(p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y));
-                }
-            }
-        }
+        crossings.extend(polygon.sides().filter_map(|side| crossing(side, y)));
         crossings.sort_by(f64::total_cmp);
         for span in crossings.chunks_exact(2) {
             let from = (span[0] - 0.5).ceil().max(0.0) as usize;
@@ -90,6 +77,7 @@ fn doubled(half: &[Vec3], w: usize, h: usize, x: usize, y: usize) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Point2;
 
     #[test]
     fn pixels_are_inside_by_their_centres() {
@@ -105,7 +93,8 @@ mod tests {
             Point2::new(2.5, 2.9),
         ];
         let mut mask = vec![false; 6 * 4];
-        mark_inside(&[ring, hole], 6, 4, &mut mask);
+        let rings = vec![ring, hole];
+        mark_inside(&Polygon { rings }, 6, 4, &mut mask);
         let rows: Vec<String> = mask
             .chunks(6)
             .map(|row| row.iter().map(|&m| if m { '#' } else { '.' }).collect())

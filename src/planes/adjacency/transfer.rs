@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 
 use super::graph::ImageGraph;
 use super::space_corner::{SpaceCorner, SpaceEdge};
-use crate::base::geometry::{Plane, mean_point};
+use crate::base::geometry::{Plane, convex_hull, mean_point};
 use crate::base::ids::ProposalOrigin;
 use crate::base::math::atan2;
 use crate::planes::coplanar::{ImageEvidence, LineEnd, UncertainPlane, log_odds};
-use crate::planes::grouping::{ProposedPlane, convex_hull};
+use crate::planes::grouping::ProposedPlane;
 use crate::planes::half_planes::is_wall;
 
 /// Share of the regions between two edges of a corner that are a face of a roof, where no other
@@ -226,7 +226,7 @@ impl PlaneSpace<'_> {
     fn plane(&self, sectors: &[Sector], fused: &Fused) -> Option<CornerPlane> {
         let plane = fused.plane.plane();
         let points = fused.sectors.iter().flat_map(|&i| &sectors[i].points);
-        let in_plan = convex_hull(points.map(|end| end.at.xy()));
+        let in_plan = convex_hull(&points.map(|end| end.at.xy()).collect::<Vec<_>>());
         (in_plan.len() >= 3).then_some(())?;
         let polygon: Vec<Point3<f64>> = in_plan.iter().map(|p| plane.lift(p.x, p.y)).collect();
         let mut regions: Vec<[u32; 2]> = fused.sectors.iter().map(|&i| sectors[i].id).collect();

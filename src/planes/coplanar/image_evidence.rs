@@ -9,7 +9,7 @@ use nalgebra::{Point2, Point3};
 use super::hypothesis::relation_nats;
 use crate::base::evidence::ON_LINE;
 use crate::base::evidence::{UncertaintyTable, WindowEvidenceTable};
-use crate::base::geometry::{Plane, Segment3, bounds, covered};
+use crate::base::geometry::{Plane, Segment3, bounds, covered, depth, sides};
 use crate::base::ids::ViewId;
 use crate::base::params::RoofParams;
 use crate::base::plan_index::PlanIndex;
@@ -68,7 +68,8 @@ impl<'s> ImageEvidence<'s> {
         for row in first(low.y)..=first(high.y) {
             for column in first(low.x)..=first(high.x) {
                 let p = Point2::new(column as f64 + 0.5, row as f64 + 0.5) * SPACING_M;
-                if depth(ring, &p) < self.half_window_m || depth(but, &p) >= self.half_window_m {
+                let holds = |ring: &[Point2<f64>]| depth(sides(ring), &p) >= self.half_window_m;
+                if !holds(ring) || holds(but) {
                     continue;
                 }
                 let views = self.matcher.views_of(&plane.lift(p.x, p.y));
@@ -83,13 +84,12 @@ impl<'s> ImageEvidence<'s> {
 
     /// What the border of a polygon costs, nats, at most 0.
     pub(crate) fn outline(&self, corners: &[Point3<f64>]) -> f64 {
-        let cost = |(a, b): (&Point3<f64>, &Point3<f64>)| {
-            let side = Segment3::new(*a, *b);
+        let cost = |[a, b]: [Point3<f64>; 2]| {
+            let side = Segment3::new(a, b);
             let shown = self.shown(&side);
             -self.border_nats_per_m * side.length() * (1.0 - (1.0 - ON_LINE) * shown)
         };
-        let next = corners.iter().cycle().skip(1);
-        corners.iter().zip(next).map(cost).sum()
+        sides(corners).map(cost).sum()
     }
 
     /// Share of a side along which the views show an edge, 0 to 1: the mean over the better half of
@@ -127,18 +127,5 @@ impl<'s> ImageEvidence<'s> {
             });
         let length = side.length();
         Some(covered(on_side, [0.0, length]) / length)
-    }
-}
-
-/// How deep a point lies inside a convex ring (counter-clockwise), metres; negative outside, and
-/// for a ring without area.
-fn depth(ring: &[Point2<f64>], p: &Point2<f64>) -> f64 {
-    let from_side = |i: usize| {
-        let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-        (b - a).perp(&(p - a)) / (b - a).norm().max(1e-9)
-    };
-    match ring.len() {
-        0..3 => f64::NEG_INFINITY,
-        n => (0..n).map(from_side).fold(f64::INFINITY, f64::min),
     }
 }

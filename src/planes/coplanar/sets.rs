@@ -10,10 +10,10 @@ use nalgebra::Point2;
 
 use super::image_evidence::ImageEvidence;
 use super::uncertain_plane::{UncertainPlane, ends_of};
-use crate::base::geometry::Plane;
+use crate::base::geometry::{Plane, convex_hull};
 use crate::base::ids::LineId;
 use crate::lines::lines3d::Line3d;
-use crate::planes::grouping::{convex_hull, line_neighbours};
+use crate::planes::grouping::line_neighbours;
 use crate::planes::half_planes::is_wall;
 
 /// Lines in one plane.
@@ -67,7 +67,8 @@ impl<'a> LineSpace<'a> {
     /// The hull of the ends of some lines in plan, counter-clockwise.
     pub(super) fn hull(&self, lines: &[LineId]) -> Vec<Point2<f64>> {
         let segments = lines.iter().map(|&l| &self.line(l).segment);
-        convex_hull(segments.flat_map(|s| [s.p0.xy(), s.p1.xy()]))
+        let ends = segments.flat_map(|s| [s.p0.xy(), s.p1.xy()]);
+        convex_hull(&ends.collect::<Vec<_>>())
     }
 
     /// Two lines as a set: the plane of three ends says where the fourth should be.

@@ -8,7 +8,7 @@ use super::sets::{LineSet, LineSpace};
 use super::uncertain_plane::{UncertainPlane, ends_of};
 use super::wireframe::{Relation, Wireframe};
 use super::*;
-use crate::base::geometry::{Segment2, Segment3};
+use crate::base::geometry::{Segment2, Segment3, sides};
 use crate::lines::lines2d::{GuidedEdge, SegmentKind};
 use crate::lines::lines3d::{LineSupport, SupportKind};
 use crate::planes::rendered_planes::{PITCH, RIDGE_Z, level_ground, scene, slope_from, textured};
@@ -174,8 +174,8 @@ fn a_gable_without_rakes_is_square_after_symmetry_and_not_before() {
 /// at both ends.
 fn set_of(corners: &[Point2<f64>], short: f64, lines: &mut Vec<Line3d>) -> LineSet {
     let n = corners.len();
-    lines.extend((0..n).map(|k| {
-        let [p, q] = [corners[k], corners[(k + 1) % n]].map(|p| Point3::new(p.x, p.y, 5.0));
+    lines.extend(sides(corners).map(|side| {
+        let [p, q] = side.map(|p| Point3::new(p.x, p.y, 5.0));
         let s = Segment3::new(p, q);
         line(s.at(short), s.at(1.0 - short))
     }));
@@ -214,11 +214,11 @@ proptest! {
 fn moved_wireframe(scene: &Scene) -> (Wireframe<'_>, wireframe::WireframeState) {
     let [x, y] = HALF;
     let corners = [at(-x, y), at(-x, 0.0), at(x, 0.0), at(x, y)].map(|p| p.xy());
-    let side = |k: usize| {
-        let [p, q] = [corners[k], corners[(k + 1) % 4]].map(|p| at(p.x, p.y));
+    let side = |(k, side): (usize, [Point2<f64>; 2])| {
+        let [p, q] = side.map(|p| at(p.x, p.y));
         seen(scene, p, q, 0.1, k as u32)
     };
-    let lines: Vec<Line3d> = (0..4).map(side).collect();
+    let lines: Vec<Line3d> = sides(&corners).enumerate().map(side).collect();
     let ends: Vec<_> = lines.iter().flat_map(ends_of).collect();
     let mut plane = UncertainPlane::fit(&ends, 0.1).unwrap();
     plane.coefficients += Vector3::new(0.1, 0.01, -0.02);

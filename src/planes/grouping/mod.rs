@@ -39,7 +39,7 @@ pub(crate) use neighbourhood::line_neighbours;
 pub(crate) use plane_group::GroupingInput;
 pub use plane_group::{Member, PlaneGroup};
 pub use proposed_plane::ProposedPlane;
-pub(crate) use region::{MARGIN, PlanRegion, convex_hull};
+pub(crate) use region::{MARGIN, PlanRegion};
 
 #[cfg(test)]
 pub(crate) use region::region_beside;

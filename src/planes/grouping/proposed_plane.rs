@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
-use crate::base::geometry::{Plane, mean_point};
+use crate::base::geometry::{Plane, depth, mean_point, plan_sides};
 use crate::base::ids::ProposalOrigin;
 use crate::base::params::RoofParams;
 
@@ -24,22 +24,12 @@ pub struct ProposedPlane {
 impl ProposedPlane {
     /// The sides in plan, metres.
     pub fn sides(&self) -> impl Iterator<Item = [Point2<f64>; 2]> {
-        let n = self.ring.len();
-        (0..n).map(move |i| [self.ring[i].xy(), self.ring[(i + 1) % n].xy()])
+        plan_sides(&self.ring)
     }
 
     /// Distance of a position from it in plan, metres; 0 inside.
     pub fn distance(&self, p: &Point2<f64>) -> f64 {
-        let inside = |[a, b]: [Point2<f64>; 2]| (b - a).perp(&(p - a)) >= 0.0;
-        if self.sides().all(inside) {
-            return 0.0;
-        }
-        let from_side = |[a, b]: [Point2<f64>; 2]| {
-            let d = b - a;
-            let t = ((p - a).dot(&d) / d.norm_squared().max(1e-12)).clamp(0.0, 1.0);
-            (p - (a + d * t)).norm()
-        };
-        self.sides().map(from_side).fold(f64::INFINITY, f64::min)
+        (-depth(self.sides(), p)).max(0.0)
     }
 
     /// The middle of the corners.

@@ -2,11 +2,10 @@
 
 use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
-use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 
 use super::plane_group::{GroupingInput, PlaneGroup};
 use super::proposed_plane::ProposedPlane;
-use crate::base::geometry::{Plane, bounds};
+use crate::base::geometry::{Plane, bounds, contains, convex_hull, sides, span};
 use crate::base::math::{larger, smaller};
 use crate::base::params::RoofParams;
 use crate::lines::lines3d::Side;
@@ -119,18 +118,6 @@ fn clipped([first, last]: [f64; 2], a: f64, b: f64) -> [f64; 2] {
     }
 }
 
-/// The part of a row inside a ring that is convex and counter-clockwise.
-fn hull_span_at(ring: &[Point2<f64>], y: f64) -> [f64; 2] {
-    if ring.len() < 3 {
-        return [f64::INFINITY, f64::NEG_INFINITY];
-    }
-    let next = ring.iter().cycle().skip(1);
-    ring.iter().zip(next).fold(WHOLE_ROW, |span, (a, b)| {
-        let side = b - a;
-        clipped(span, -side.y, side.x * (y - a.y) + side.y * a.x)
-    })
-}
-
 impl PlanRegion {
     /// The region of a group: `depth` away from each supporting line on the side of its half-plane
     /// (both sides for a line without one), a little beyond on the other side and over the ends.
@@ -165,10 +152,8 @@ impl PlanRegion {
             .chain(group.proposed(input).filter_map(PlanBox::around))
             .collect();
         let lines = (group.members.iter()).map(|m| &input.lines[m.line.index()].segment);
-        Self::of(
-            boxes,
-            convex_hull(lines.flat_map(|l| [l.p0.xy(), l.p1.xy()])),
-        )
+        let ends = lines.flat_map(|l| [l.p0.xy(), l.p1.xy()]);
+        Self::of(boxes, convex_hull(&ends.collect::<Vec<_>>()))
     }
 
     fn of(boxes: Vec<PlanBox>, hull: Vec<Point2<f64>>) -> Self {
@@ -192,13 +177,13 @@ impl PlanRegion {
             let d = p - b.start;
             let (t, u) = (d.dot(&b.along), b.along.x * d.y - b.along.y * d.x);
             t >= -b.ends && t <= b.length + b.ends && u <= b.left && u >= -b.right
-        }) || is_inside(&self.hull, p)
+        }) || contains(sides(&self.hull), p)
     }
 
     /// What the region holds of the row of the plan at `y`, metres.
     pub(crate) fn row(&self, y: f64) -> RegionRow {
         let boxes = self.boxes.iter().map(|b| b.span_at(y));
-        let spans = boxes.chain(std::iter::once(hull_span_at(&self.hull, y)));
+        let spans = boxes.chain(span(sides(&self.hull), y));
         RegionRow(spans.filter(|[first, last]| first <= last).collect())
     }
 
@@ -209,45 +194,16 @@ impl PlanRegion {
         if down.norm() < NEARLY_LEVEL {
             return Vec::new();
         }
-        let next = self.hull.iter().cycle().skip(1);
-        let sides = self.hull.iter().zip(next).map(|(a, b)| [*a, *b]);
         let is_level = |[a, b]: &[Point2<f64>; 2]| {
             (b - a).dot(&down).abs() < LEVEL * down.norm() * (b - a).norm()
         };
-        sides.filter(is_level).collect()
+        sides(&self.hull).filter(is_level).collect()
     }
 
     /// Least and largest x and y, metres.
     pub(crate) fn bounds(&self) -> [Point2<f64>; 2] {
         bounds(self.boxes.iter().flat_map(PlanBox::corners))
     }
-}
-
-/// The corners of the convex hull, counter-clockwise; none of points that cannot be triangulated.
-pub(crate) fn convex_hull(points: impl Iterator<Item = Point2<f64>>) -> Vec<Point2<f64>> {
-    let mut triangles = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
-    let inserted = points.map(|p| triangles.insert(spade::Point2::new(p.x, p.y)));
-    if inserted.filter(Result::is_err).count() > 0 {
-        return Vec::new();
-    }
-    let corners = triangles.convex_hull().map(|edge| edge.from().position());
-    let mut ring: Vec<Point2<f64>> = corners.map(|p| Point2::new(p.x, p.y)).collect();
-    let next = ring.iter().cycle().skip(1);
-    let twice = |(a, b): (&Point2<f64>, &Point2<f64>)| (a - ring[0]).perp(&(b - ring[0]));
-    if ring.iter().zip(next).map(twice).sum::<f64>() < 0.0 {
-        ring.reverse();
-    }
-    ring
-}
-
-/// Does a convex ring, in either order, hold a point?
-fn is_inside(ring: &[Point2<f64>], p: &Point2<f64>) -> bool {
-    let side = |i: usize| {
-        let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-        (b - a).perp(&(p - a))
-    };
-    !ring.is_empty()
-        && ((0..ring.len()).all(|i| side(i) > 0.0) || (0..ring.len()).all(|i| side(i) < 0.0))
 }
 
 /// What a plane may cover to both sides of a line in it.
@@ -364,13 +320,13 @@ mod tests {
     #[test]
     fn lines_one_behind_the_other_have_nothing_between_them() {
         let on_a_line = [0.0, 1.0, 5.0, 9.0].map(|t| Point2::new(t, 2.0 * t));
-        let hull = convex_hull(on_a_line.into_iter());
+        let hull = convex_hull(&on_a_line);
         for p in [
             Point2::new(3.0, 6.0),
             Point2::new(3.0, 6.5),
             Point2::new(3.0, 5.5),
         ] {
-            assert!(!is_inside(&hull, &p));
+            assert!(!contains(sides(&hull), &p));
         }
     }
 }

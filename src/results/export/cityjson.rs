@@ -14,6 +14,7 @@ use serde_json::{Map, Value, json};
 use super::format::{ATLAS_FILE, rounded, to_bytes};
 use super::measured::Measured;
 use super::walls::{add_attributes, walled_solid};
+use crate::base::geometry::plan_sides;
 use crate::base::ids::FacetId;
 use crate::orienting::scene::Scene;
 use crate::results::roof_report::{Estimate, Lengths, RoofEdgeKind};
@@ -304,18 +305,13 @@ fn semantic_surface(model: &RoofModel, measured: &Measured, surface: Surface) ->
 /// Adds what is known of the sides, a list for each ring; a side begins at the corner of its index.
 fn add_sides(surface: &mut Value, facet: &Facet, known: &FacetUncertainty) {
     let of_rings = |value: &dyn Fn(&SideUncertainty) -> Value| -> Value {
-        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
         let of_ring = |ring: &Vec<Point3<f64>>| -> Value {
-            let next = ring.iter().cycle().skip(1);
-            let middles = ring
-                .iter()
-                .zip(next)
-                .map(|(p, q)| nalgebra::center(&p.xy(), &q.xy()));
+            let middles = plan_sides(ring).map(|[p, q]| nalgebra::center(&p, &q));
             middles
                 .map(|middle| known.side(&middle).map_or(Value::Null, value))
                 .collect()
         };
-        rings.map(of_ring).collect()
+        facet.rings().map(of_ring).collect()
     };
     surface["sideSigma"] = of_rings(&|side| json!(rounded(side.sigma_m, 4)));
     surface["sideSupport"] = of_rings(&|side| json!(side.support.name()));

@@ -93,7 +93,6 @@ pub(super) fn facets(scene: &Scene, model: &RoofModel, measured: &Measured) -> V
         (measured.buildings.iter()).flat_map(|b| b.facets.iter().map(move |f| (b.building, f)))
     {
         let of = &model.facets[facet.facet.index()];
-        let rings = std::iter::once(&of.outer).chain(&of.holes);
         let closed = |ring: &Vec<Point3<f64>>| -> Vec<[f64; 2]> {
             let corners = ring.iter().chain(ring.first());
             corners.map(|p| position(scene, p)).collect()
@@ -120,7 +119,7 @@ pub(super) fn facets(scene: &Scene, model: &RoofModel, measured: &Measured) -> V
             "type": "Feature",
             "geometry": {
                 "type": "Polygon",
-                "coordinates": rings.map(closed).collect::<Vec<_>>(),
+                "coordinates": of.rings().map(closed).collect::<Vec<_>>(),
             },
             "properties": properties.0,
         }));

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector2};
 
-use crate::base::geometry::Segment3;
+use crate::base::geometry::{Segment3, sides};
 use crate::base::ids::FacetId;
 use crate::roofs::model::Facet;
 use crate::roofs::solids::WRITTEN_STEP_M;
@@ -120,13 +120,13 @@ type Piece = (RoofEdgeKind, Option<FacetId>, Segment3);
 pub fn roof_edges(facets: &[(FacetId, &Facet)]) -> Vec<RoofEdge> {
     let mut left_of = BTreeMap::new();
     for (i, (_, facet)) in facets.iter().enumerate() {
-        for [a, b] in rings_of(facet).flat_map(|ring| sides(ring)) {
+        for [a, b] in facet.rings().flat_map(|ring| sides(ring)) {
             left_of.insert((key(&a), key(&b)), (i, a.z, b.z));
         }
     }
     let mut edges = Vec::new();
     for (i, &(id, facet)) in facets.iter().enumerate() {
-        for ring in rings_of(facet) {
+        for ring in facet.rings() {
             let pieces = sides(ring).map(|[a, b]| {
                 let twin = left_of.get(&(key(&b), key(&a))).filter(|twin| twin.0 != i);
                 let beyond = twin.map(|&(j, z_b, z_a)| (j, z_a - a.z, z_b - b.z));
@@ -155,15 +155,6 @@ pub fn roof_edges(facets: &[(FacetId, &Facet)]) -> Vec<RoofEdge> {
         }
     }
     edges
-}
-
-fn rings_of(facet: &Facet) -> impl Iterator<Item = &Vec<Point3<f64>>> {
-    std::iter::once(&facet.outer).chain(&facet.holes)
-}
-
-fn sides(ring: &[Point3<f64>]) -> impl Iterator<Item = [Point3<f64>; 2]> {
-    let next = ring.iter().cycle().skip(1);
-    ring.iter().zip(next).map(|(&a, &b)| [a, b])
 }
 
 /// Joins neighbouring pieces of a ring that are one straight edge.

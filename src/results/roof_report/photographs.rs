@@ -4,7 +4,7 @@ use nalgebra::{Point2, Point3};
 
 use crate::base::ids::ViewId;
 use crate::orienting::scene::Scene;
-use crate::roofs::model::{Facet, Occluders, RoofModel, inside};
+use crate::roofs::model::{Facet, Occluders, RoofModel};
 
 /// Places that are looked at, in a row over the facet.
 const PLACES: usize = 6;
@@ -41,10 +41,7 @@ fn places_on(facet: &Facet) -> Vec<Point3<f64>> {
         low[axis] + share * (high[axis] - low[axis])
     };
     let grid = (0..PLACES * PLACES).map(|i| Point2::new(at(i % PLACES, 0), at(i / PLACES, 1)));
-    let covered = |p: &Point2<f64>| {
-        inside(&facet.outer, p) && !facet.holes.iter().any(|hole| inside(hole, p))
-    };
-    grid.filter(covered)
+    grid.filter(|p| facet.covers(p))
         .map(|p| facet.plane.lift(p.x, p.y))
         .collect()
 }

@@ -83,7 +83,9 @@ impl<'a> Shape<'a> {
             let gradient = gradient(facet);
             let steepest = gradient.try_normalize(1e-3).unwrap_or_else(Vector2::x);
             let middle = mean_point(&facet.outer).xy();
-            let (area, moment) = corners.area_and_moment(rings, &middle);
+            let plan = facet.plan();
+            let area = plan.signed_area();
+            let centroid = plan.centroid().unwrap_or(middle);
             let piece = |ends: [usize; 2]| {
                 let [p, q] = ends.map(|corner| corners.at(corner));
                 let side = sides.of_piece(ends);
@@ -114,7 +116,7 @@ impl<'a> Shape<'a> {
                 middle,
                 middle_z: facet.plane.z_at(middle.x, middle.y),
                 area,
-                moment,
+                moment: (centroid - middle) * area,
             });
         }
         for facet in &shape_facets {

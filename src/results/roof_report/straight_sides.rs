@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Point2, Point3, Vector2};
 
 use super::edges::{TURN_SINE, key};
+use crate::base::geometry::sides;
 use crate::roofs::model::Facet;
 
 /// Corners in plan, each once.
@@ -25,8 +26,7 @@ impl Corners {
             index: BTreeMap::new(),
         };
         let rings_of = |facet: &'a Facet| {
-            let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-            rings
+            (facet.rings())
                 .map(|ring| ring.iter().map(|p| corners.add(p)).collect())
                 .collect()
         };
@@ -50,31 +50,11 @@ impl Corners {
     pub(super) fn at(&self, corner: usize) -> Point2<f64> {
         self.positions[corner]
     }
-
-    /// Area of rings, and its first moment about a place.
-    pub(super) fn area_and_moment(
-        &self,
-        rings: &Rings,
-        about: &Point2<f64>,
-    ) -> (f64, Vector2<f64>) {
-        let (mut area, mut moment) = (0.0, Vector2::zeros());
-        for ends in ring_pieces(rings) {
-            let [p, q] = ends.map(|corner| self.at(corner) - about);
-            area += p.perp(&q) / 2.0;
-            moment += (p + q) * p.perp(&q) / 6.0;
-        }
-        (area, moment)
-    }
 }
 
 /// From each corner of rings to the next.
 pub(super) fn ring_pieces(rings: &Rings) -> impl Iterator<Item = [usize; 2]> + '_ {
-    rings.iter().flat_map(|ring| pieces_of(ring))
-}
-
-fn pieces_of(ring: &[usize]) -> impl Iterator<Item = [usize; 2]> + '_ {
-    let next = ring.iter().cycle().skip(1);
-    ring.iter().zip(next).map(|(&p, &q)| [p, q])
+    rings.iter().flat_map(|ring| sides(ring))
 }
 
 /// The straight sides of a building.
@@ -88,8 +68,7 @@ pub(super) struct StraightSides {
 impl StraightSides {
     /// The sides of rings.
     pub(super) fn of<'a>(corners: &Corners, rings: impl Iterator<Item = &'a Vec<usize>>) -> Self {
-        let pieces: BTreeSet<[usize; 2]> =
-            rings.flat_map(|ring| pieces_of(ring)).map(sorted).collect();
+        let pieces: BTreeSet<[usize; 2]> = rings.flat_map(|ring| sides(ring)).map(sorted).collect();
         let mut beside: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
         for &[p, q] in &pieces {
             beside.entry(p).or_default().insert(q);

@@ -2,7 +2,7 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::base::geometry::Plane;
+use crate::base::geometry::{Plane, plan_sides};
 use crate::orienting::synthetic::gable_scene;
 use crate::roofs::model::{CornerUncertainty, FacetUncertainty, SideSupport, SideUncertainty};
 use crate::roofs::solids::close_buildings;
@@ -297,13 +297,12 @@ fn with_uncertainty(mut facets: Vec<Facet>) -> Vec<Facet> {
 
 /// The sides of a ring, each as uncertain.
 fn sides_of(ring: &[Point3<f64>]) -> Vec<SideUncertainty> {
-    let next = ring.iter().cycle().skip(1);
-    let side = |(p, q): (&Point3<f64>, &Point3<f64>)| SideUncertainty {
-        ends: [p.xy(), q.xy()],
+    let side = |ends: [Point2<f64>; 2]| SideUncertainty {
+        ends,
         sigma_m: SIDE_M,
         support: SideSupport::Edges,
     };
-    ring.iter().zip(next).map(side).collect()
+    plan_sides(ring).map(side).collect()
 }
 
 /// A number of mean 0 and standard deviation 1 (sum of twelve uniform ones).

@@ -131,7 +131,7 @@ fn ground_rectangle(model: &RoofModel) -> Option<FacePlane> {
         up,
         normal,
         rings: vec![flat.iter().map(lift).collect()],
-        flat: vec![flat],
+        flat: flat.into(),
     })
 }
 

@@ -309,6 +309,7 @@ fn coordinates(
         ]
     };
     face.flat
+        .rings
         .iter()
         .map(|ring| ring.iter().map(uv).collect())
         .collect()

@@ -5,10 +5,10 @@
 //! seen at a grazing angle (a wall 10 degrees off the ray falls half a metre within a pixel of 8.5
 //! cm).
 
-use nalgebra::{Point2, Point3};
+use nalgebra::Point3;
 
 use super::patch::{FacePlane, TexturePatch};
-use crate::base::geometry::clip;
+use crate::base::geometry::{Polygon, clip};
 use crate::orienting::scene::Scene;
 use crate::photographs::camera::Camera;
 use crate::photographs::raster::mark_inside;
@@ -77,18 +77,15 @@ pub(super) fn occluded_texels(
     // Towards the centre the projection goes to infinity: stop just below its height.
     let ceiling = 0.999 * plane.height(center);
     for other in face_images.around(face) {
-        let shadow: Vec<Vec<Point2<f64>>> = faces[other]
-            .rings
-            .iter()
-            .map(|ring| {
-                let above = clip(ring, |p| plane.height(p) - CLEARANCE_M);
-                let between = clip(&above, |p| ceiling - plane.height(p));
-                between
-                    .iter()
-                    .map(|p| patch.texel_of(&plane.cast(center, p)))
-                    .collect()
-            })
-            .collect();
+        let shadow = faces[other].rings.iter().map(|ring| {
+            let above = clip(ring, &|p| plane.height(p) - CLEARANCE_M);
+            let between = clip(&above, &|p| ceiling - plane.height(p));
+            let texel = |p: &Point3<f64>| patch.texel_of(&plane.cast(center, p));
+            between.iter().map(texel).collect()
+        });
+        let shadow = Polygon {
+            rings: shadow.collect(),
+        };
         mark_inside(&shadow, patch.width, patch.height, &mut mask);
     }
     mask
@@ -163,7 +160,7 @@ fn meet(a: &[f64; 4], b: &[f64; 4]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector3;
+    use nalgebra::{Point2, Vector3};
 
     #[test]
     fn a_steep_view_shows_only_the_middle_of_a_wall() {
@@ -176,7 +173,7 @@ mod tests {
             up: Vector3::z(),
             normal: -Vector3::y(),
             rings: vec![flat.iter().map(|p| Point3::new(p.x, 0.0, p.y)).collect()],
-            flat: vec![flat],
+            flat: flat.into(),
         };
         let patch = TexturePatch::new(&plane, 0.1);
         let inside = patch.inside(&plane.flat);

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Point3, Vector3};
 
-use crate::base::geometry::bounds;
+use crate::base::geometry::{Polygon, sides};
 use crate::photographs::raster::mark_inside;
 use crate::roofs::model::{Solid, SolidFace};
 
@@ -24,7 +24,7 @@ pub(super) struct FacePlane {
     /// Rings in the world, metres.
     pub rings: Vec<Vec<Point3<f64>>>,
     /// Rings in the frame, metres.
-    pub flat: Vec<Vec<Point2<f64>>>,
+    pub flat: Polygon,
 }
 
 impl FacePlane {
@@ -44,10 +44,11 @@ impl FacePlane {
         let origin = rings[0][0];
         let flatten =
             |p: &Point3<f64>| Point2::new((p - origin).dot(&right), (p - origin).dot(&up));
-        let flat = rings
-            .iter()
-            .map(|ring| ring.iter().map(flatten).collect())
-            .collect();
+        let flat = Polygon {
+            rings: (rings.iter())
+                .map(|ring| ring.iter().map(flatten).collect())
+                .collect(),
+        };
         Self {
             origin,
             right,
@@ -77,7 +78,7 @@ impl FacePlane {
 
     /// Lower left and upper right corner of the box around the face, in the frame.
     pub(super) fn bounds(&self) -> [Point2<f64>; 2] {
-        bounds(self.flat.iter().flatten().copied())
+        self.flat.bounds()
     }
 
     /// The middle of the box, in the world.
@@ -95,8 +96,8 @@ fn horizontal_in(normal: &Vector3<f64>, ring: &[Point3<f64>]) -> Vector3<f64> {
     if across.norm() > 0.01 {
         return across.normalize();
     }
-    let longest = (0..ring.len())
-        .map(|i| ring[(i + 1) % ring.len()] - ring[i])
+    let longest = sides(ring)
+        .map(|[p, q]| q - p)
         .max_by(|a, b| a.norm().total_cmp(&b.norm()))
         .unwrap_or_else(Vector3::x);
     (longest - normal * normal.dot(&longest))
@@ -147,14 +148,11 @@ impl TexturePatch {
         )
     }
 
-    /// Which texels have their centre inside the rings (even-odd), given in the frame of the face.
-    pub(super) fn inside(&self, rings: &[Vec<Point2<f64>>]) -> Vec<bool> {
+    /// Which texels have their centre inside a polygon, given in the frame of the face.
+    pub(super) fn inside(&self, polygon: &Polygon) -> Vec<bool> {
         let mut mask = vec![false; self.width * self.height];
-        let rings: Vec<Vec<_>> = rings
-            .iter()
-            .map(|ring| ring.iter().map(|p| self.texel_of(p)).collect())
-            .collect();
-        mark_inside(&rings, self.width, self.height, &mut mask);
+        let texels = polygon.mapped(|p| self.texel_of(p));
+        mark_inside(&texels, self.width, self.height, &mut mask);
         mask
     }
 }

@@ -4,11 +4,10 @@
 //! there (ridges, hips) or the highest (valleys). That surface is taken which fits the neighbours
 //! best along the outline: least area of steps.
 
-use nalgebra::{Point2, Point3};
+use nalgebra::Point2;
 
 use super::draft::DraftFacet;
-use super::plan::Region;
-use crate::base::geometry::Plane;
+use crate::base::geometry::{Plane, Polygon, plan_sides};
 use crate::roofs::model::{Facet, WELD_M};
 
 /// A stretch of the outline of a facet with what lies beyond it.
@@ -59,12 +58,12 @@ pub(super) fn closed_over(facets: &[DraftFacet], gone: usize) -> Vec<DraftFacet>
             best = Some((area, surface));
         }
     }
-    let place = Region::of(&facets[gone].facet);
+    let place = facets[gone].facet.plan();
     let gains = |i: usize| best.as_ref().map(|(_, s)| s.part_of(i, &place, &plane));
     let mut left = Vec::new();
     for (i, facet) in facets.iter().enumerate().filter(|(i, _)| *i != gone) {
         match gains(i).flatten() {
-            Some(part) => left.extend(facet.over(&Region::of(&facet.facet).or(&part))),
+            Some(part) => left.extend(facet.over(&facet.facet.plan().or(&part))),
             None => left.push(facet.clone()),
         }
     }
@@ -86,9 +85,9 @@ impl Surface {
     fn part_of<'a>(
         &self,
         facet: usize,
-        region: &Region,
+        region: &Polygon,
         plane: &dyn Fn(usize) -> &'a Plane,
-    ) -> Option<Region> {
+    ) -> Option<Polygon> {
         let (of, sign) = match self {
             Self::One(i) => return (*i == facet).then(|| region.clone()),
             Self::Lowest(of) => (of, 1.0),
@@ -104,7 +103,7 @@ impl Surface {
 }
 
 /// The part of a region where one plane lies below another (`sign` 1) or above it (-1).
-fn where_lower(region: &Region, plane: &Plane, other: &Plane, sign: f64) -> Region {
+fn where_lower(region: &Polygon, plane: &Plane, other: &Plane, sign: f64) -> Polygon {
     let rise = |p: &Plane| -p.normal.xy() / p.normal.z;
     let by = (rise(plane) - rise(other)) * sign;
     let at_origin = (plane.z_at(0.0, 0.0) - other.z_at(0.0, 0.0)) * sign;
@@ -113,7 +112,7 @@ fn where_lower(region: &Region, plane: &Plane, other: &Plane, sign: f64) -> Regi
         return if at_origin <= 0.0 {
             region.clone()
         } else {
-            Region::default()
+            Polygon::default()
         };
     }
     // On the line by . p + at_origin = 0; the difference falls to the left of this direction.
@@ -142,21 +141,14 @@ fn steps<'a>(surface: &Surface, sides: &[Side], plane: &dyn Fn(usize) -> &'a Pla
 /// The sides of a facet, in the order of its rings.
 fn sides(facets: &[DraftFacet], of: usize) -> Vec<Side> {
     let runs = |facet: &Facet, from: &Point2<f64>, to: &Point2<f64>| {
-        let mut rings = std::iter::once(&facet.outer).chain(&facet.holes);
-        rings.any(|ring| edges(ring).any(|[p, q]| is_same(&p, from) && is_same(&q, to)))
+        let mut sides = facet.rings().flat_map(|ring| plan_sides(ring));
+        sides.any(|[p, q]| is_same(&p, from) && is_same(&q, to))
     };
-    let facet = &facets[of].facet;
-    let rings = std::iter::once(&facet.outer).chain(&facet.holes);
     let side = |ends: [Point2<f64>; 2]| Side {
         ends,
         beyond: (0..facets.len()).find(|&i| i != of && runs(&facets[i].facet, &ends[1], &ends[0])),
     };
-    rings.flat_map(|ring| edges(ring).map(side)).collect()
-}
-
-fn edges(ring: &[Point3<f64>]) -> impl Iterator<Item = [Point2<f64>; 2]> + '_ {
-    let next = ring.iter().cycle().skip(1);
-    ring.iter().zip(next).map(|(p, q)| [p.xy(), q.xy()])
+    facets[of].facet.plan().sides().map(side).collect()
 }
 
 fn is_same(p: &Point2<f64>, q: &Point2<f64>) -> bool {

@@ -5,10 +5,9 @@ use nalgebra::{Point2, Point3, Vector2};
 use super::draft::{At, Draft, DraftFacet};
 use super::outcome::NotApplied;
 use super::place::corners;
-use super::plan::{Region, SHORTEST_EDGE_M, SIDE_OFFSET_M};
 use super::shape::{LEAST_AREA_M2, OFF_PLANE_M, turned, without};
-use super::slope::{Beside, Slope};
-use crate::base::geometry::{Plane, Segment3};
+use super::slope::{Beside, SHORTEST_EDGE_M, SIDE_OFFSET_M, Slope};
+use crate::base::geometry::{Plane, Polygon, Segment3};
 use crate::lines::lines3d::{Line3d, Side};
 use crate::roofs::model::{Facet, SideSupport, SideUncertainty};
 
@@ -127,16 +126,14 @@ fn regions_beside(
     facet: &Facet,
     middle: &Point2<f64>,
     along: &Vector2<f64>,
-) -> Option<[Region; 2]> {
+) -> Option<[Polygon; 2]> {
     let aside = Vector2::new(-along.y, along.x) * SIDE_OFFSET_M;
-    let region = Region::of(facet);
-    let left = region
-        .left_of(middle, along)
-        .connected_at(&(middle + aside));
-    let right = region.without(&left).connected_at(&(middle - aside));
+    let region = facet.plan();
+    let left = part_at(&region.left_of(middle, along), &(middle + aside));
+    let right = part_at(&region.without(&left), &(middle - aside));
     // Beyond its ends the edge divides nothing: what lies there belongs to the half beside it.
     let regions = [region.without(&right), right];
-    let is_too_small = |half: &Region| half.area() < LEAST_AREA_M2;
+    let is_too_small = |half: &Polygon| half.area() < LEAST_AREA_M2;
     (!regions.iter().any(is_too_small)).then_some(regions)
 }
 
@@ -162,6 +159,12 @@ fn other_plane(
     is_other(&slope, half, own, beside.line).then_some(slope.plane)
 }
 
+/// The connected part at a place, with its holes; nothing where the polygon is not.
+fn part_at(polygon: &Polygon, p: &Point2<f64>) -> Polygon {
+    let mut at = polygon.parts().into_iter().filter(|part| part.contains(p));
+    at.next().unwrap_or_default()
+}
+
 /// Is a plane beside a line, at the corners of a facet, another one than that of the facet?
 fn is_other(slope: &Slope, facet: &Facet, own: &Plane, line: &Line3d) -> bool {
     facet.outer.iter().any(|p| {
@@ -184,13 +187,11 @@ fn chord(facet: &Facet, line: &Segment3) -> Option<Chord> {
     let (start, along) = (line.p0.xy(), plan_direction(line));
     let length = (line.p1.xy() - start).norm();
     let mut crossings: Vec<f64> = Vec::new();
-    for ring in std::iter::once(&facet.outer).chain(&facet.holes) {
-        for (p, q) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-            let [a, b] = [p, q].map(|p| along.perp(&(p.xy() - start)));
-            if (a > 0.0) != (b > 0.0) {
-                let at = p.xy() + (q.xy() - p.xy()) * (a / (a - b));
-                crossings.push(along.dot(&(at - start)));
-            }
+    for [p, q] in facet.plan().sides() {
+        let [a, b] = [p, q].map(|p| along.perp(&(p - start)));
+        if (a > 0.0) != (b > 0.0) {
+            let at = p + (q - p) * (a / (a - b));
+            crossings.push(along.dot(&(at - start)));
         }
     }
     crossings.sort_by(f64::total_cmp);

@@ -1,12 +1,14 @@
 //! The model building by building, while it is corrected.
 
-use crate::base::geometry::Plane;
+use crate::base::geometry::{Plane, Polygon};
 use crate::base::ids::{BuildingId, FacetId};
 use crate::roofs::model::{Building, Facet, RoofModel, Surface, WELD_M, check_invariants};
 use crate::roofs::solids::{SolidRejection, close_buildings};
 
 use super::outcome::NotApplied;
-use super::plan::Region;
+
+/// Parts of a polygon below this area are rounding, m^2: a sliver of 1 mm along an eave.
+const SLIVER_M2: f64 = 0.02;
 
 /// A facet and the one that it was before the corrections.
 #[derive(Clone, Debug)]
@@ -29,17 +31,15 @@ impl DraftFacet {
 }
 
 impl DraftFacet {
-    /// The same facet over a region of the plan instead, in as many parts as that has.
-    pub(super) fn over(&self, region: &Region) -> Vec<Self> {
-        let parts = region.rings_on(&self.facet.plane).into_iter();
-        let over = parts.map(|mut rings| Self {
-            facet: Facet {
-                outer: rings.remove(0),
-                holes: rings,
-                ..self.facet.clone()
-            },
-            source: self.source,
-        });
+    /// The same facet over another polygon, in as many parts as that has, without slivers.
+    pub(super) fn over(&self, polygon: &Polygon) -> Vec<Self> {
+        let parts = polygon.parts().into_iter();
+        let over = parts
+            .filter(|part| part.signed_area() > SLIVER_M2)
+            .map(|part| Self {
+                facet: self.facet.over(&part),
+                source: self.source,
+            });
         over.collect()
     }
 }

@@ -4,7 +4,6 @@
 //! outcome    what became of a correction
 //! draft      the model building by building, closed again after each correction
 //! place      facets, buildings, corners and edges by their place in the world
-//! plan       regions of the plan: intersection, difference, union
 //! closing    the place of a deleted facet, divided between its neighbours
 //! shape      facets deleted, merged, split, added
 //! drawn      the line of an edge drawn in one photograph
@@ -24,7 +23,6 @@ mod draft;
 mod drawn;
 mod outcome;
 mod place;
-mod plan;
 mod shape;
 mod slope;
 #[cfg(test)]

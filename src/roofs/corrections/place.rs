@@ -6,7 +6,7 @@ use super::draft::{At, Draft};
 use super::outcome::NotApplied;
 use crate::base::geometry::Segment3;
 use crate::base::params::FacetPlace;
-use crate::roofs::model::{Facet, inside};
+use crate::roofs::model::Facet;
 
 /// A facet whose plane passes a place within this distance in height is the one that was meant,
 /// metres. Assumption: less than a storey, more than runs differ by.
@@ -50,10 +50,7 @@ impl Draft {
 
     /// The facet that covers a plan position.
     pub(super) fn facet_below(&self, p: &Point2<f64>) -> Option<At> {
-        let covers = |facet: &Facet| {
-            inside(&facet.outer, p) && !facet.holes.iter().any(|hole| inside(hole, p))
-        };
-        let mut covering = self.facets().filter(|(_, f)| covers(&f.facet));
+        let mut covering = self.facets().filter(|(_, f)| f.facet.covers(p));
         covering.next().map(|(at, _)| at)
     }
 
@@ -90,7 +87,7 @@ impl Draft {
         let mut found: Vec<[Corner; 2]> = Vec::new();
         for (of, f) in self.facets() {
             let mut first = 0;
-            for ring in std::iter::once(&f.facet.outer).chain(&f.facet.holes) {
+            for ring in f.facet.rings() {
                 for (i, p) in ring.iter().enumerate() {
                     let next = (i + 1) % ring.len();
                     // A side whose ends are one place of the edge does not lie along it.
@@ -119,5 +116,5 @@ impl Draft {
 
 /// The corners of a facet through its rings.
 pub(super) fn corners(facet: &Facet) -> impl Iterator<Item = &Point3<f64>> {
-    facet.outer.iter().chain(facet.holes.iter().flatten())
+    facet.rings().flatten()
 }

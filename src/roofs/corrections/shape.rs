@@ -6,8 +6,7 @@ use super::closing::{closed_over, shared_outline};
 use super::draft::{At, Draft, DraftFacet};
 use super::outcome::NotApplied;
 use super::place::corners;
-use super::plan::Region;
-use crate::base::geometry::{Plane, Segment3};
+use crate::base::geometry::{Plane, Polygon, Segment3};
 use crate::base::ids::BuildingId;
 use crate::base::params::FacetPlace;
 use crate::roofs::model::{Facet, is_simple};
@@ -100,8 +99,8 @@ pub(super) fn merge(
     if kept.house != taken.house || kept == taken {
         return Err(NotApplied::NotNeighbours);
     }
-    let region = Region::of(&draft.get(kept).facet).or(&Region::of(&draft.get(taken).facet));
-    let merged = draft.get(kept).over(&region);
+    let [region, other] = [kept, taken].map(|at| draft.get(at).facet.plan());
+    let merged = draft.get(kept).over(&region.or(&other));
     if merged.len() != 1 {
         return Err(NotApplied::NotNeighbours);
     }
@@ -123,7 +122,7 @@ pub(super) fn split(
     if !(direction.norm() > SNAP_DISTANCE_M && direction.norm() < FARTHEST_COORDINATE_M) {
         return Err(NotApplied::NotDivided);
     }
-    let region = Region::of(&whole.facet);
+    let region = whole.facet.plan();
     let halves = [direction, -direction].map(|d| region.left_of(&p.xy(), &d));
     if halves.iter().any(|half| half.area() < LEAST_AREA_M2) {
         return Err(NotApplied::NotDivided);
@@ -162,8 +161,9 @@ pub(super) fn add_facet(
         .collect();
     let plane = Plane::fit(&drawn).ok_or(NotApplied::NoRoom)?;
     let plan: Vec<Point2<f64>> = drawn.iter().map(|(p, _)| p.xy()).collect();
-    let region = Region::ring(&plan);
-    if plane.normal.z < 0.1 || !is_simple(&plan) || region.area() < LEAST_AREA_M2 {
+    let is_simple = is_simple(&plan);
+    let region = Polygon::from(plan);
+    if plane.normal.z < 0.1 || !is_simple || region.area() < LEAST_AREA_M2 {
         return Err(NotApplied::NoRoom);
     }
     let new = new_facet(plane).over(&region);
@@ -176,9 +176,9 @@ pub(super) fn add_facet(
     let mut changed = draft.clone();
     for h in 0..changed.houses.len() {
         let facets = std::mem::take(&mut changed.houses[h].facets);
-        let meets = |f: &DraftFacet| Region::of(&f.facet).and(&region).area() > 0.0;
+        let meets = |f: &DraftFacet| f.facet.plan().and(&region).area() > 0.0;
         let cut = |f: DraftFacet| match meets(&f) {
-            true => f.over(&Region::of(&f.facet).without(&region)),
+            true => f.over(&f.facet.plan().without(&region)),
             false => vec![f],
         };
         changed.houses[h].facets = facets.into_iter().flat_map(cut).collect();
@@ -213,8 +213,8 @@ pub(super) fn mirror(
     let plane = Plane::from_point_normal(&image(&original.outer[0]), &normal);
     let plane = plane.ok_or(NotApplied::NoRoom)?;
     let ring: Vec<Point2<f64>> = original.outer.iter().map(|p| image(p).xy()).collect();
-    let taken = draft.facets().map(|(_, f)| Region::of(&f.facet));
-    let free = taken.fold(Region::ring(&ring), |free, taken| free.without(&taken));
+    let taken = draft.facets().map(|(_, f)| f.facet.plan());
+    let free = taken.fold(Polygon::from(ring), |free, taken| free.without(&taken));
     let mut parts = new_facet(plane).over(&free);
     // What lies beyond other facets is not beside the edge.
     parts.sort_by(|a, b| b.facet.plan_area().total_cmp(&a.facet.plan_area()));

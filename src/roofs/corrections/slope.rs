@@ -17,8 +17,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector2};
 
-use super::plan::{SHORTEST_EDGE_M, SIDE_OFFSET_M};
-use crate::base::geometry::{Plane, Segment3, mean_point};
+use crate::base::geometry::{Plane, Segment3, contains, mean_point, plan_sides, sides};
 use crate::base::params::{Params, SweepParams};
 use crate::lines::linematch::shown_along;
 use crate::lines::lines3d::{Line3d, Side, ThetaFrame};
@@ -26,8 +25,12 @@ use crate::orienting::scene::Scene;
 use crate::planes::half_planes::Posterior;
 use crate::planes::photoconsistency::{PlanGrid, consistency_map};
 use crate::roofs::facets::FINEST_CELL_M;
-use crate::roofs::model::{Facet, inside};
+use crate::roofs::model::Facet;
 
+/// A place this far beside a line is on that side of it, metres: less than the width of any facet.
+pub(super) const SIDE_OFFSET_M: f64 = 0.01;
+/// An edge is longer, metres.
+pub(super) const SHORTEST_EDGE_M: f64 = 0.1;
 /// Most cells of the windows; of a larger half they are coarser.
 const MOST_CELLS: f64 = 5000.0;
 /// Samples of theta in the first step of the sweep: at a decimetre a pixel a side 5 m from the edge
@@ -131,13 +134,10 @@ impl Beside<'_> {
             |p: &Point3<f64>| along.perp(&(p.xy() - line.p0.xy())).abs() < SHORTEST_EDGE_M;
         let pixel_m = self.scene.median_ground_pixel(&line.at(0.5));
         let least_m = self.params.matching.min_edgels as f64 * pixel_m.unwrap_or(0.0);
-        let rings = std::iter::once(&half.outer).chain(&half.holes);
-        let sides = rings.flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
-        sides
-            .filter(|(p, q)| (*q - *p).xy().norm() >= least_m.max(SHORTEST_EDGE_M))
-            .filter(|(p, q)| !(is_on_line(p) && is_on_line(q)))
-            .filter(|(p, q)| bounds_half(half, p, q))
-            .map(|(p, q)| [*p, *q])
+        (half.rings().flat_map(|ring| sides(ring)))
+            .filter(|[p, q]| (q - p).xy().norm() >= least_m.max(SHORTEST_EDGE_M))
+            .filter(|[p, q]| !(is_on_line(p) && is_on_line(q)))
+            .filter(|[p, q]| bounds_half(half, p, q))
             .collect()
     }
 }
@@ -147,8 +147,7 @@ fn bounds_half(half: &Facet, p: &Point3<f64>, q: &Point3<f64>) -> bool {
     let along = (q - p).xy().normalize();
     let aside = Vector2::new(-along.y, along.x) * SIDE_OFFSET_M;
     let middle = p.xy() + (q - p).xy() * 0.5;
-    let covers = |at| inside(&half.outer, &at) && !half.holes.iter().any(|h| inside(h, &at));
-    covers(middle + aside) && !covers(middle - aside)
+    half.covers(&(middle + aside)) && !half.covers(&(middle - aside))
 }
 
 /// The windows in a half, at their places in plan.
@@ -170,7 +169,9 @@ impl Windows {
         let cells = 0..grid.width * grid.height;
         Some(Self {
             scene: scene.reduced(((grid.of_samples().step / pixel_m) as usize).max(1)),
-            cells: cells.filter(|&k| inside(&half.outer, &at(k))).collect(),
+            cells: cells
+                .filter(|&k| contains(plan_sides(&half.outer), &at(k)))
+                .collect(),
             grid,
         })
     }

@@ -15,7 +15,7 @@ use super::evidence::PlaneEvidence;
 use super::input::FacetInput;
 use super::point_cloud::CloudEvidence;
 use crate::base::execution::{Sharded, reached, sharded_map};
-use crate::base::geometry::{Plane, bounds};
+use crate::base::geometry::{Plane, bounds, sides};
 use crate::base::params::RoofParams;
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
@@ -185,10 +185,10 @@ fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
         Point2::new(x1, y1),
         Point2::new(x0, y1),
     ];
-    let frame = (0..4).map(|i| Border {
+    let frame = sides(&corner).map(|[a, b]| Border {
         kind: BorderKind::Closing,
-        a: corner[i],
-        b: corner[(i + 1) % 4],
+        a,
+        b,
     });
     borders.iter().copied().chain(frame).collect()
 }

@@ -8,7 +8,7 @@ use super::evidence::PlaneEvidence;
 use super::outlines::OutlineEnergy;
 use super::point_cloud::CloudEvidence;
 use super::register::RegisterEvidence;
-use crate::base::geometry::Plane;
+use crate::base::geometry::{Plane, sides};
 use crate::base::ids::{BuildingId, ViewId};
 use crate::base::labelling::Energy;
 use crate::base::params::RoofParams;
@@ -106,9 +106,8 @@ impl CompetingPlanes {
     fn real_ratio(&self, outline: &Outline, delineation: &Delineation) -> f64 {
         let plane = &self.planes[outline.plane as usize];
         let (mut real, mut total) = (0.0, 0.0);
-        for (i, &v) in outline.outer.iter().enumerate() {
-            let a = delineation.vertices[v];
-            let b = delineation.vertices[outline.outer[(i + 1) % outline.outer.len()]];
+        for side in sides(&outline.outer) {
+            let [a, b] = side.map(|v| delineation.vertices[v]);
             let pieces = ((b - a).norm() / 0.25).ceil().max(1.0);
             for k in 0..pieces as usize {
                 let (p, q) = (

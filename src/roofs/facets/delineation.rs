@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::borders::Arrangement;
-use crate::base::geometry::Plane;
+use crate::base::geometry::{Plane, contains, sides, signed_area};
 use crate::base::labelling::NO_PLANE;
 
 /// A facet in plan, before it is lifted onto its plane.
@@ -102,7 +102,7 @@ fn join_coinciding(vertices: &[Point2<f64>], outlines: &mut Vec<Outline>) {
         }
         o.holes.retain(|h| h.len() >= 3);
     }
-    outlines.retain(|o| o.outer.len() >= 3 && signed_area(&o.outer, vertices) > 0.0);
+    outlines.retain(|o| o.outer.len() >= 3 && is_counter_clockwise(&o.outer, vertices));
 }
 
 /// Takes out repeated vertices and runs to a vertex and straight back.
@@ -227,13 +227,14 @@ fn nest(
     rings: impl Iterator<Item = Vec<usize>>,
     vertices: &[Point2<f64>],
 ) -> Vec<(Vec<usize>, Vec<Vec<usize>>)> {
-    let (outer, holes): (Vec<_>, Vec<_>) = rings.partition(|r| signed_area(r, vertices) > 0.0);
+    let (outer, holes): (Vec<_>, Vec<_>) = rings.partition(|r| is_counter_clockwise(r, vertices));
     let mut nested: Vec<(Vec<usize>, Vec<Vec<usize>>)> =
         outer.into_iter().map(|o| (o, Vec::new())).collect();
     for hole in holes {
         let owner = nested.iter_mut().find(|(o, _)| {
-            hole.iter()
-                .any(|v| !o.contains(v) && inside(&vertices[*v], o, vertices))
+            let around = || sides(o).map(|side| side.map(|v| vertices[v]));
+            let mut others = hole.iter().filter(|v| !o.contains(v));
+            others.any(|v| contains(around(), &vertices[*v]))
         });
         if let Some((_, holes)) = owner {
             holes.push(hole);
@@ -242,25 +243,8 @@ fn nest(
     nested
 }
 
-/// Signed area of a ring, positive counter-clockwise, square metres.
-pub(super) fn signed_area(ring: &[usize], vertices: &[Point2<f64>]) -> f64 {
-    let origin = ring.first().map_or(Point2::origin(), |&v| vertices[v]);
-    let next = ring.iter().cycle().skip(1);
-    0.5 * ring
-        .iter()
-        .zip(next)
-        .map(|(&a, &b)| (vertices[a] - origin).perp(&(vertices[b] - origin)))
-        .sum::<f64>()
-}
-
-fn inside(p: &Point2<f64>, ring: &[usize], vertices: &[Point2<f64>]) -> bool {
-    let next = ring.iter().cycle().skip(1);
-    ring.iter().zip(next).fold(false, |odd, (&i, &j)| {
-        let (a, b) = (vertices[i], vertices[j]);
-        let crosses =
-            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
-        odd != crosses
-    })
+fn is_counter_clockwise(ring: &[usize], vertices: &[Point2<f64>]) -> bool {
+    signed_area(ring.iter().map(|&v| vertices[v])) > 0.0
 }
 
 /// Which vertices stay: junctions of borders, and bends of the chains between them (Douglas and
@@ -456,7 +440,7 @@ mod tests {
         assert!(
             found
                 .iter()
-                .all(|r| r.len() == 3 && signed_area(r, &vertices) > 0.0)
+                .all(|r| r.len() == 3 && is_counter_clockwise(r, &vertices))
         );
     }
 

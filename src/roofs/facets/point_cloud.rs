@@ -29,7 +29,7 @@ use nalgebra::{Point2, Vector2};
 
 use super::input::PlacedCloud;
 use crate::base::evidence::{EvidenceTerm, POINT_CLOUD};
-use crate::base::geometry::{Plane, bounds};
+use crate::base::geometry::Plane;
 use crate::base::math::{exp, hypot, larger, ln, normal_density};
 use crate::photographs::raster::mark_inside;
 use crate::planes::photoconsistency::PlanGrid;
@@ -121,7 +121,7 @@ impl CloudEvidence {
     pub(super) fn of_facet(&self, facet: &Facet) -> EvidenceTerm {
         let of_plane = self.of(&facet.plane);
         let PlanGrid { origin, step, .. } = self.grid;
-        let [low, high] = bounds(facet.outer.iter().map(|p| p.xy()));
+        let [low, high] = facet.plan_bounds();
         let corner = |p: Point2<f64>| {
             let at = (p - origin) / step;
             [(at.x, self.grid.width), (at.y, self.grid.height)]
@@ -130,13 +130,9 @@ impl CloudEvidence {
         let ([c0, r0], [c1, r1]) = (corner(low), corner(high));
         let (width, height) = (c1 + 1 - c0, r1 + 1 - r0);
         let shift = Vector2::new(c0 as f64, r0 as f64);
-        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-        let plan = rings.map(|ring| {
-            let place = |p: &nalgebra::Point3<f64>| (p.xy() - origin) / step - shift;
-            ring.iter().map(|p| Point2::from(place(p))).collect()
-        });
+        let plan = (facet.plan()).mapped(|p| Point2::from((p - origin) / step - shift));
         let mut covered = vec![false; width * height];
-        mark_inside(&plan.collect::<Vec<Vec<_>>>(), width, height, &mut covered);
+        mark_inside(&plan, width, height, &mut covered);
         let (mut nats, mut on_it, mut told) = (0.0, 0.0, 0.0);
         for k in (0..covered.len()).filter(|k| covered[*k]) {
             if let Some(ratio) = of_plane.ratio(c0 + k % width, r0 + k / width) {

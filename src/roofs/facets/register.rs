@@ -94,7 +94,8 @@ impl<'a> RegisterEvidence<'a> {
             );
             for row in rows {
                 for column in columns.clone() {
-                    let depth = footprint.depth(&grid.center(column, row)) + params.overhang_m;
+                    let depth =
+                        footprint.outline.depth(&grid.center(column, row)) + params.overhang_m;
                     let stored = &mut depths[row * grid.width + column];
                     *stored = larger(*stored, smaller(depth, REACH_M) as f32);
                     is_here |= depth > 0.0;
@@ -209,18 +210,8 @@ impl<'a> RegisterEvidence<'a> {
         } = self.grid;
         let mut covered = vec![false; width * height];
         for facet in facets {
-            let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-            let plan = |ring: &Vec<nalgebra::Point3<f64>>| -> Vec<Point2<f64>> {
-                ring.iter()
-                    .map(|p| Point2::from((p.xy() - origin) / step))
-                    .collect()
-            };
-            mark_inside(
-                &rings.map(plan).collect::<Vec<_>>(),
-                width,
-                height,
-                &mut covered,
-            );
+            let plan = (facet.plan()).mapped(|p| Point2::from((p - origin) / step));
+            mark_inside(&plan, width, height, &mut covered);
         }
         covered
     }

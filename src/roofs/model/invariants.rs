@@ -3,13 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use i_overlay::core::fill_rule::FillRule;
-use i_overlay::core::overlay_rule::OverlayRule;
-use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::Serialize;
 
 use super::roof_model::{Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
+use crate::base::geometry::{Polygon, sides, signed_area, vector_area};
 use crate::base::ids::{BuildingId, FacetId};
 use crate::base::math::{larger, smaller};
 
@@ -160,14 +158,10 @@ impl Solid {
 
     /// Vector area of a face, m^2: its length is the area, its direction the outward normal.
     pub fn vector_area(&self, rings: &[Vec<u32>]) -> Vector3<f64> {
-        rings.iter().map(|ring| self.ring_vector_area(ring)).sum()
-    }
-
-    fn ring_vector_area(&self, ring: &[u32]) -> Vector3<f64> {
-        let at = |i: usize| self.vertices[ring[i % ring.len()] as usize];
-        (1..ring.len()).fold(Vector3::zeros(), |sum, i| {
-            sum + (at(i) - at(0)).cross(&(at(i + 1) - at(0))) / 2.0
-        })
+        let corner = |&v: &u32| self.vertices[v as usize];
+        (rings.iter())
+            .map(|ring| vector_area(ring.iter().map(corner)))
+            .sum()
     }
 }
 
@@ -187,34 +181,28 @@ fn check_facet(id: FacetId, facet: &Facet, found: &mut Vec<Violation>) {
             distance_m,
         });
     }
-    for (ring, points) in [&facet.outer].into_iter().chain(&facet.holes).enumerate() {
-        let plan: Vec<_> = points.iter().map(|p| p.xy()).collect();
+    for (ring, plan) in facet.plan().rings.into_iter().enumerate() {
         if !is_simple(&plan) {
             found.push(Violation::FacetRingNotSimple { facet: id, ring });
-        } else if (doubled_area(&plan) > 0.0) != (ring == 0) {
+        } else if (signed_area(plan) > 0.0) != (ring == 0) {
             found.push(Violation::FacetRingOrientation { facet: id, ring });
         }
     }
 }
 
 fn check_overlaps(facets: &[Facet], found: &mut Vec<Violation>) {
-    let plans: Vec<Vec<Vec<[f64; 2]>>> = facets.iter().map(plan_of).collect();
+    let plans: Vec<Polygon> = facets.iter().map(Facet::plan).collect();
+    let boxes: Vec<[Point2<f64>; 2]> = facets.iter().map(Facet::plan_bounds).collect();
+    let boxes_meet = |i: usize, j: usize| {
+        let ([a, b], [c, d]) = (boxes[i], boxes[j]);
+        (0..2).all(|axis| a[axis] < d[axis] && c[axis] < b[axis])
+    };
     for j in 0..facets.len() {
-        for i in (0..j).filter(|&i| boxes_meet(&plans[i], &plans[j])) {
-            let shapes =
-                plans[i].overlay_as::<i64>(&plans[j], OverlayRule::Intersect, FillRule::EvenOdd);
-            let rings: Vec<Vec<Point2<f64>>> = shapes
-                .into_iter()
-                .flatten()
-                .map(|ring| ring.into_iter().map(Point2::from).collect())
-                .collect();
-            let area_m2 = rings
-                .iter()
-                .map(|ring| doubled_area(ring) / 2.0)
-                .sum::<f64>();
-            let outline: f64 = rings.iter().map(|ring| perimeter(ring)).sum();
+        for i in (0..j).filter(|&i| boxes_meet(i, j)) {
+            let common = plans[i].and(&plans[j]);
+            let area_m2 = common.signed_area();
             // A sliver of width w and length l has the area w l and the outline 2 l.
-            if area_m2 > OVERLAP_WIDTH_M * outline / 2.0 {
+            if area_m2 > OVERLAP_WIDTH_M * common.perimeter() / 2.0 {
                 found.push(Violation::FacetsOverlap {
                     first: FacetId::from_index(i),
                     second: FacetId::from_index(j),
@@ -431,9 +419,8 @@ fn meet_where_they_cross(a: &[Point3<f64>], b: &[Point3<f64>]) -> bool {
 /// The heights of a wall at a place along it, from each to each.
 fn section(wall: &[Point3<f64>], at: &Point2<f64>, along: &Vector2<f64>) -> Vec<[f64; 2]> {
     let s = |p: &Point3<f64>| along.dot(&(p.xy() - at));
-    let next = wall.iter().cycle().skip(1);
-    let mut heights: Vec<f64> = (wall.iter().zip(next))
-        .map(|(p, q)| (p, q, s(p), s(q)))
+    let mut heights: Vec<f64> = sides(wall)
+        .map(|[p, q]| (p, q, s(&p), s(&q)))
         .filter(|(.., sp, sq)| (*sp < 0.0) != (*sq < 0.0))
         .map(|(p, q, sp, sq)| p.z + (q.z - p.z) * sp / (sp - sq))
         .collect();
@@ -462,38 +449,14 @@ fn plan_extent(wall: &[Point3<f64>]) -> (Point2<f64>, Point2<f64>) {
     (start, far(start))
 }
 
-fn plan_of(facet: &Facet) -> Vec<Vec<[f64; 2]>> {
-    [&facet.outer]
-        .into_iter()
-        .chain(&facet.holes)
-        .map(|ring| ring.iter().map(|p| [p.x, p.y]).collect())
-        .collect()
-}
-
-fn boxes_meet(a: &[Vec<[f64; 2]>], b: &[Vec<[f64; 2]>]) -> bool {
-    (0..2).all(|axis| {
-        let range = |rings: &[Vec<[f64; 2]>]| {
-            rings[0].iter().fold((f64::MAX, f64::MIN), |(l, h), p| {
-                (l.min(p[axis]), h.max(p[axis]))
-            })
-        };
-        let ((la, ha), (lb, hb)) = (range(a), range(b));
-        la < hb && lb < ha
-    })
-}
-
 /// Does a ring of at least three corners neither touch nor cross itself?
 pub(crate) fn is_simple(ring: &[Point2<f64>]) -> bool {
     let n = ring.len();
     let distinct = (0..n).all(|i| (0..i).all(|j| (ring[i] - ring[j]).norm() > WELD_M / 100.0));
-    let edge = |i: usize| (ring[i], ring[(i + 1) % n]);
-    let crosses = (0..n).any(|i| {
-        (0..i).any(|j| {
-            let ((a, b), (c, d)) = (edge(i), edge(j));
-            properly_cross(a, b, c, d)
-        })
-    });
-    n >= 3 && distinct && !crosses && doubled_area(ring) != 0.0
+    let edges: Vec<[Point2<f64>; 2]> = sides(ring).collect();
+    let cross = |&[a, b]: &[Point2<f64>; 2], &[c, d]: &[Point2<f64>; 2]| properly_cross(a, b, c, d);
+    let crosses = (0..n).any(|i| edges[..i].iter().any(|edge| cross(&edges[i], edge)));
+    n >= 3 && distinct && !crosses && signed_area(ring.iter().copied()) != 0.0
 }
 
 /// Do two segments cross in their insides, by more than rounding?
@@ -508,15 +471,4 @@ fn properly_cross(a: Point2<f64>, b: Point2<f64>, c: Point2<f64>, d: Point2<f64>
         }
     };
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
-}
-
-fn doubled_area(ring: &[Point2<f64>]) -> f64 {
-    let at = |i: usize| ring[i % ring.len()] - ring[0];
-    (1..ring.len()).map(|i| at(i).perp(&at(i + 1))).sum()
-}
-
-fn perimeter(ring: &[Point2<f64>]) -> f64 {
-    (0..ring.len())
-        .map(|i| (ring[(i + 1) % ring.len()] - ring[i]).norm())
-        .sum()
 }

@@ -24,5 +24,4 @@ pub use roof_model::{Building, Facet, RoofModel, Solid, SolidFace, Surface, WELD
 pub use triangulate::triangulate;
 pub use uncertainty::{CornerUncertainty, FacetUncertainty, SideSupport, SideUncertainty};
 pub use visibility::Occluders;
-pub(crate) use visibility::inside;
 pub use walls::{BuildingWalls, Wall};

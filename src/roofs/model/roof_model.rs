@@ -4,7 +4,7 @@ use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
 use super::uncertainty::FacetUncertainty;
-use crate::base::geometry::{Plane, bounds};
+use crate::base::geometry::{Plane, Polygon, bounds, contains, plan_sides, signed_area};
 use crate::base::ids::{BuildingId, FacetId, HalfPlaneId, LineId, ProposalOrigin};
 
 /// Plan positions closer than this are one, metres. Ten times the step in which coordinates are
@@ -44,6 +44,35 @@ pub struct Facet {
 }
 
 impl Facet {
+    /// The outer ring, then the holes.
+    pub fn rings(&self) -> impl Iterator<Item = &Vec<Point3<f64>>> {
+        std::iter::once(&self.outer).chain(&self.holes)
+    }
+
+    /// Its outline from above.
+    pub fn plan(&self) -> Polygon {
+        let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
+        Polygon {
+            rings: self.rings().map(in_plan).collect(),
+        }
+    }
+
+    /// Does it lie over or under a plan position?
+    pub fn covers(&self, p: &Point2<f64>) -> bool {
+        contains(self.rings().flat_map(|ring| plan_sides(ring)), p)
+    }
+
+    /// The same facet over one part of another polygon.
+    pub fn over(&self, part: &Polygon) -> Self {
+        let lift = |p: &Point2<f64>| self.plane.lift(p.x, p.y);
+        let mut rings = (part.rings.iter()).map(|ring| ring.iter().map(lift).collect());
+        Self {
+            outer: rings.next().unwrap_or_default(),
+            holes: rings.collect(),
+            ..self.clone()
+        }
+    }
+
     /// The part of the plan that it lies in: least and largest x and y, metres.
     pub fn plan_bounds(&self) -> [Point2<f64>; 2] {
         bounds(self.outer.iter().map(Point3::xy))
@@ -51,11 +80,7 @@ impl Facet {
 
     /// Area inside the outer ring in plan, square metres.
     pub fn plan_area(&self) -> f64 {
-        let origin = self.outer.first().map_or(Point2::origin(), Point3::xy);
-        let next = self.outer.iter().cycle().skip(1);
-        let twice =
-            |(a, b): (&Point3<f64>, &Point3<f64>)| (a.xy() - origin).perp(&(b.xy() - origin));
-        0.5 * self.outer.iter().zip(next).map(twice).sum::<f64>()
+        signed_area(self.outer.iter().map(Point3::xy))
     }
 
     /// Area inside the outer ring on its plane, square metres.
@@ -123,8 +148,7 @@ impl RoofModel {
     /// are faces of a roof, each taken by itself.
     pub fn probability_of_corner(&self, building: BuildingId, corner: &Point3<f64>) -> f64 {
         let has_it = |facet: &&Facet| {
-            let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-            let mut corners = rings.flatten();
+            let mut corners = facet.rings().flatten();
             facet.building == building && corners.any(|p| (p - corner).norm() < WELD_M)
         };
         (self.facets.iter().filter(has_it))

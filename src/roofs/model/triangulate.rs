@@ -7,16 +7,17 @@ use nalgebra::{Point2, Vector3};
 use spade::{ConstrainedDelaunayTriangulation, Point2 as SpadePoint, Triangulation};
 
 use super::roof_model::{Solid, SolidFace};
+use crate::base::geometry::{Polygon, sides};
 
 /// Triangles of a face, counter-clockwise seen from outside. Indices count the corners of all rings
 /// in order, so that texture coordinates per corner can be looked up.
 pub fn triangulate(solid: &Solid, face: &SolidFace) -> Vec<[u32; 3]> {
-    let rings = flat_rings(solid, face);
+    let flat = flat_rings(solid, face);
     let mut cdt = ConstrainedDelaunayTriangulation::<SpadePoint<f64>>::new();
     // Rings may touch in a point: spade then gives the same vertex twice.
     let mut corner_of = Vec::new();
     let mut corner = 0;
-    for ring in &rings {
+    for ring in &flat.rings {
         let mut vertices = Vec::with_capacity(ring.len());
         for p in ring {
             // Only numbers that are not finite are rejected.
@@ -29,8 +30,7 @@ pub fn triangulate(solid: &Solid, face: &SolidFace) -> Vec<[u32; 3]> {
             vertices.push(vertex);
             corner += 1;
         }
-        for i in 0..vertices.len() {
-            let (from, to) = (vertices[i], vertices[(i + 1) % vertices.len()]);
+        for [from, to] in sides(&vertices) {
             if from != to && cdt.can_add_constraint(from, to) {
                 cdt.add_constraint(from, to);
             }
@@ -39,14 +39,14 @@ pub fn triangulate(solid: &Solid, face: &SolidFace) -> Vec<[u32; 3]> {
     cdt.inner_faces()
         .filter(|triangle| {
             let c = triangle.center();
-            contains(&rings, &Point2::new(c.x, c.y))
+            flat.contains(&Point2::new(c.x, c.y))
         })
         .map(|triangle| triangle.vertices().map(|v| corner_of[v.index()]))
         .collect()
 }
 
 /// The rings in a frame of the face's plane, metres, the outer one counter-clockwise.
-fn flat_rings(solid: &Solid, face: &SolidFace) -> Vec<Vec<Point2<f64>>> {
+fn flat_rings(solid: &Solid, face: &SolidFace) -> Polygon {
     let normal = solid
         .vector_area(&face.rings)
         .try_normalize(1e-12)
@@ -63,24 +63,10 @@ fn flat_rings(solid: &Solid, face: &SolidFace) -> Vec<Vec<Point2<f64>>> {
         let d = solid.vertices[v as usize] - origin;
         Point2::new(d.dot(&right), d.dot(&up))
     };
-    face.rings
-        .iter()
-        .map(|ring| ring.iter().map(flat).collect())
-        .collect()
-}
-
-/// Is the point inside the rings (even-odd)?
-fn contains(rings: &[Vec<Point2<f64>>], p: &Point2<f64>) -> bool {
-    let mut inside = false;
-    for ring in rings {
-        for (i, a) in ring.iter().enumerate() {
-            let b = &ring[(i + 1) % ring.len()];
-            if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) {
-                inside = !inside;
-            }
-        }
+    let rings = face.rings.iter();
+    Polygon {
+        rings: rings.map(|ring| ring.iter().map(flat).collect()).collect(),
     }
-    inside
 }
 
 #[cfg(test)]

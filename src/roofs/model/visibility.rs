@@ -3,6 +3,7 @@
 use nalgebra::{Point2, Point3};
 
 use super::roof_model::Facet;
+use crate::base::geometry::{contains, plan_sides};
 
 /// A roof hides what lies deeper below it, metres: a point must not be occluded by its own facet,
 /// nor by a neighbour known to a few decimetres only.
@@ -119,11 +120,10 @@ impl<'a> Roof<'a> {
             top: tops.fold(f64::MIN, f64::max) + 1e-6,
             rows: Vec::new(),
         };
-        let ring = &facet.outer;
         roof.rows.resize(roof.row(high.y) + 1, Vec::new());
-        for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+        for [a, b] in plan_sides(&facet.outer) {
             for row in roof.row(a.y.min(b.y))..=roof.row(a.y.max(b.y)) {
-                roof.rows[row].push([a.xy(), b.xy()]);
+                roof.rows[row].push([a, b]);
             }
         }
         roof
@@ -153,23 +153,8 @@ impl<'a> Roof<'a> {
 
     /// Does it lie over a plan position?
     fn is_over(&self, p: &Point2<f64>) -> bool {
-        self.has_in_bounds(p) && is_inside(self.rows[self.row(p.y)].iter().copied(), p)
+        self.has_in_bounds(p) && contains(self.rows[self.row(p.y)].iter().copied(), p)
     }
-}
-
-/// Is a plan position inside the sides of a ring (even-odd rule)?
-fn is_inside(sides: impl Iterator<Item = [Point2<f64>; 2]>, p: &Point2<f64>) -> bool {
-    sides.fold(false, |odd, [a, b]| {
-        let crosses =
-            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
-        odd != crosses
-    })
-}
-
-/// Is a plan position inside a ring (even-odd rule)?
-pub(crate) fn inside(ring: &[Point3<f64>], p: &Point2<f64>) -> bool {
-    let next = ring.iter().cycle().skip(1);
-    is_inside(ring.iter().zip(next).map(|(a, b)| [a.xy(), b.xy()]), p)
 }
 
 #[cfg(test)]
@@ -230,7 +215,7 @@ mod tests {
             .collect();
         let occluders = Occluders::new(&roofs);
         let covers = |f: &Facet, p: &Point3<f64>| {
-            inside(&f.outer, &p.xy()) && f.plane.z_at(p.x, p.y) - p.z > LEAST_DEPTH_M
+            contains(plan_sides(&f.outer), &p.xy()) && f.plane.z_at(p.x, p.y) - p.z > LEAST_DEPTH_M
         };
         let mut hidden = 0;
         for _ in 0..2000 {

@@ -10,11 +10,10 @@
 
 use std::collections::BTreeMap;
 
-use i_overlay::core::overlay_rule::OverlayRule;
 use nalgebra::{Point2, Point3, Vector2};
 
-use super::partition::overlay;
 use super::sides::{Side, key, left_of, mitre};
+use crate::base::geometry::{self, Polygon};
 
 /// Least plan area of a footprint, as a share of the roof's: less is no house.
 const LEAST_FOOTPRINT: f64 = 0.3;
@@ -29,17 +28,13 @@ const TOUCHING_DISTANCE_M: f64 = 0.015;
 /// Where two stretches of the outline come nearer than this it is parted, metres.
 const PINCH_M: f64 = 4.0 * TOUCHING_DISTANCE_M;
 
-/// Rings in plan.
-pub(super) type Rings = Vec<Vec<Point2<f64>>>;
-
 /// The plan of the roof without the bands along its sides; `None` where too little is left.
-pub(super) fn footprint(roofs: &[Rings], sides: &[Side], depths: &[f64]) -> Option<Rings> {
-    let all = |rings: &[Vec<Point2<f64>>]| rings.to_vec();
-    let mut plan: Rings = all(roofs.first()?);
+pub(super) fn footprint(roofs: &[Polygon], sides: &[Side], depths: &[f64]) -> Option<Polygon> {
+    let mut plan = roofs.first()?.clone();
     for roof in &roofs[1..] {
-        plan = overlay(&plan, roof, OverlayRule::Union).concat();
+        plan = plan.or(roof);
     }
-    let whole = area_of(&plan);
+    let whole = plan.signed_area().abs();
     let starts: BTreeMap<_, usize> = (sides.iter().enumerate())
         .map(|(i, side)| (key(&side.start()), i))
         .collect();
@@ -57,12 +52,12 @@ pub(super) fn footprint(roofs: &[Rings], sides: &[Side], depths: &[f64]) -> Opti
                 (&sides[after], depths[after]),
             ],
         );
-        plan = overlay(&plan, &[band], OverlayRule::Difference).concat();
+        plan = plan.without(&band.into());
     }
     if depths.iter().any(|depth| *depth > 0.0) {
-        plan = aligned(wide_pieces(parted(plan)), roofs);
+        plan = aligned(&wide_pieces(&parted(plan)), roofs);
     }
-    (area_of(&plan) > LEAST_FOOTPRINT * whole).then_some(plan)
+    (plan.signed_area().abs() > LEAST_FOOTPRINT * whole).then_some(plan)
 }
 
 /// What lies between a side and its wall: a rectangle, or as far as the next wall where the outline
@@ -83,21 +78,8 @@ fn band(side: &Side, depth: f64, [before, after]: [(&Side, f64); 2]) -> Vec<Poin
     rim.chain([far, near]).collect()
 }
 
-/// Area of rings, square metres: holes run the other way.
-fn area_of(rings: &Rings) -> f64 {
-    let twice = |ring: &Vec<Point2<f64>>| {
-        let next = ring.iter().cycle().skip(1);
-        let origin = ring[0];
-        let terms = ring.iter().zip(next);
-        terms
-            .map(|(p, q)| (p - origin).perp(&(q - origin)))
-            .sum::<f64>()
-    };
-    (rings.iter().map(twice).sum::<f64>() / 2.0).abs()
-}
-
 /// The footprint without small squares around the points where it touches itself.
-fn parted(mut plan: Rings) -> Rings {
+fn parted(mut plan: Polygon) -> Polygon {
     // The sides of a square may touch again.
     const PARTING_ROUNDS: usize = 3;
     for _ in 0..PARTING_ROUNDS {
@@ -108,18 +90,18 @@ fn parted(mut plan: Rings) -> Rings {
         for p in points {
             let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
             let square = corners.map(|[x, y]| p + Vector2::new(x, y) * 2.0 * PINCH_M);
-            plan = overlay(&plan, &[square.to_vec()], OverlayRule::Difference).concat();
+            plan = plan.without(&square.to_vec().into());
         }
     }
     plan
 }
 
 /// Corners that lie on a stretch of outline which is not their own.
-fn pinches(plan: &Rings) -> Vec<Point2<f64>> {
+fn pinches(plan: &Polygon) -> Vec<Point2<f64>> {
     /// Stretches that follow each other within so many metres are one.
     const OWN_STRETCH_M: f64 = 10.0 * PINCH_M;
     let mut found: Vec<Point2<f64>> = Vec::new();
-    for (r, ring) in plan.iter().enumerate() {
+    for (r, ring) in plan.rings.iter().enumerate() {
         let n = ring.len();
         let next = |i: usize| ring[(i + 1) % n];
         let mut at = vec![0.0];
@@ -131,7 +113,7 @@ fn pinches(plan: &Rings) -> Vec<Point2<f64>> {
             way.min(at[n] - way)
         };
         for (i, p) in ring.iter().enumerate() {
-            let touches = plan.iter().enumerate().any(|(s, other)| {
+            let touches = plan.rings.iter().enumerate().any(|(s, other)| {
                 (0..other.len()).any(|j| {
                     let end = (j + 1) % other.len();
                     let own = r == s && along(i, j).min(along(i, end)) < OWN_STRETCH_M;
@@ -147,26 +129,19 @@ fn pinches(plan: &Rings) -> Vec<Point2<f64>> {
 }
 
 /// The pieces that a house can stand on.
-fn wide_pieces(plan: Rings) -> Rings {
-    let pieces = overlay(&plan, &[], OverlayRule::Subject).into_iter();
-    let is_wide = |piece: &Rings| {
-        let around: f64 = (piece.iter())
-            .flat_map(|ring| (0..ring.len()).map(|i| (ring[(i + 1) % ring.len()] - ring[i]).norm()))
-            .sum();
+fn wide_pieces(plan: &Polygon) -> Polygon {
+    let is_wide = |piece: &Polygon| {
         // Of width w and length l the area is w l and the outline 2 l.
-        2.0 * area_of(piece) > LEAST_WIDTH_M * around
+        2.0 * piece.signed_area().abs() > LEAST_WIDTH_M * piece.perimeter()
     };
-    pieces.filter(is_wide).flatten().collect()
+    plan.parts().into_iter().filter(is_wide).collect()
 }
 
 /// The footprint with its corners on the corners and edges of roofs that are near, and its edges
 /// through near corners of roofs.
-fn aligned(plan: Rings, roofs: &[Rings]) -> Rings {
-    let rings = || roofs.iter().flatten();
-    let corners: Vec<Point2<f64>> = rings().flatten().copied().collect();
-    let edges: Vec<[Point2<f64>; 2]> = rings()
-        .flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]))
-        .collect();
+fn aligned(plan: &Polygon, roofs: &[Polygon]) -> Polygon {
+    let edges: Vec<[Point2<f64>; 2]> = roofs.iter().flat_map(Polygon::sides).collect();
+    let corners: Vec<Point2<f64>> = edges.iter().map(|edge| edge[0]).collect();
     let nearest = |to: &Point2<f64>, among: &[Point2<f64>]| {
         let near = among.iter().map(|p| ((p - to).norm(), *p));
         let nearest = near.min_by(|p, q| p.0.total_cmp(&q.0));
@@ -194,19 +169,18 @@ fn aligned(plan: Rings, roofs: &[Rings]) -> Rings {
         stops.sort_by(|p, q| p.0.total_cmp(&q.0));
         std::iter::once(a).chain(stops.into_iter().map(|(_, c)| c))
     };
-    let aligned: Rings = (plan.iter())
-        .map(|ring| {
-            let mut moved: Vec<_> = ring.iter().map(&mut place).collect();
-            moved.dedup();
-            let ends = moved.iter().cycle().skip(1);
-            let mut whole: Vec<_> = (moved.iter().zip(ends))
-                .flat_map(|(a, b)| through(*a, *b))
-                .collect();
-            whole.dedup();
-            whole
-        })
-        .collect();
-    overlay(&aligned, &[], OverlayRule::Subject).concat()
+    let rings = plan.rings.iter().map(|ring| {
+        let mut moved: Vec<_> = ring.iter().map(&mut place).collect();
+        moved.dedup();
+        let sides = geometry::sides(&moved);
+        let mut whole: Vec<_> = sides.flat_map(|[a, b]| through(a, b)).collect();
+        whole.dedup();
+        whole
+    });
+    let aligned = Polygon {
+        rings: rings.collect(),
+    };
+    aligned.parts().into_iter().collect()
 }
 
 /// The point of a segment that is nearest.

@@ -12,6 +12,7 @@ use nalgebra::{Point2, Point3};
 
 use super::rings::turn;
 use super::walls::{FaceKind, Shell, ShellFace};
+use crate::base::geometry::sides;
 use crate::base::math;
 use crate::roofs::model::WELD_M;
 
@@ -303,8 +304,7 @@ fn in_one_plane(walls: &[usize], shell: &Shell) -> bool {
             .iter()
             .map(|&c| shell.corners[c as usize])
             .collect();
-        (0..ring.len()).fold(0.0, |sum, i| {
-            let (p, q) = (ring[i], ring[(i + 1) % ring.len()]);
+        sides(&ring).fold(0.0, |sum, [p, q]| {
             let (s, t) = ((p.xy() - start).dot(&along), (q.xy() - start).dot(&along));
             sum + (t - s) * (p.z + q.z)
         }) > 0.0

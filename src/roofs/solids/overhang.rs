@@ -20,17 +20,16 @@
 
 use std::collections::BTreeMap;
 
-use i_overlay::core::overlay_rule::OverlayRule;
-use nalgebra::{Point2, Point3};
+use nalgebra::Point3;
 
-use super::footprint::{Rings, footprint};
+use super::footprint::footprint;
 use super::manifold::close_shell;
-use super::partition::{PlanPartition, overlay};
+use super::partition::PlanPartition;
 use super::rings::{PlanRegion, regions_from_edges, ring_edges};
 use super::sides::Side;
 use super::soundness::is_sound_as_written;
 use super::walls::{FaceKind, Shell, ShellFace};
-use crate::base::geometry::Plane;
+use crate::base::geometry::{OverlayRule, Plane, Polygon, plan_sides};
 use crate::base::ids::FacetId;
 use crate::roofs::model::{Facet, Solid, SolidFace, Surface, WELD_M};
 
@@ -45,7 +44,7 @@ pub fn close_below_overhangs(
     depths: &[f64],
     ground: &Plane,
 ) -> Option<Solid> {
-    let roofs: Vec<Rings> = members.iter().map(|(_, f)| plan_of(f)).collect();
+    let roofs: Vec<Polygon> = members.iter().map(|(_, f)| f.plan()).collect();
     let footprint = footprint(&roofs, sides, depths)?;
     let mut parts: Vec<Part> = Vec::new();
     for (member, roof) in roofs.iter().enumerate() {
@@ -53,7 +52,7 @@ pub fn close_below_overhangs(
             (OverlayRule::Intersect, true),
             (OverlayRule::Difference, false),
         ] {
-            let shapes = overlay(roof, &footprint, rule);
+            let shapes = roof.overlay(&footprint, rule);
             let facets = shapes.iter().filter_map(|s| part_of(members[member].1, s));
             parts.extend(facets.map(|facet| Part {
                 facet,
@@ -83,27 +82,10 @@ pub fn close_below_overhangs(
     is_sound_as_written(&solid).then_some(solid)
 }
 
-fn plan_of(facet: &Facet) -> Rings {
-    let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-    rings
-        .map(|ring| ring.iter().map(Point3::xy).collect())
-        .collect()
-}
-
 /// A part of a facet with the outline of a shape; `None` for a sliver.
-fn part_of(facet: &Facet, shape: &[Vec<Point2<f64>>]) -> Option<Facet> {
-    let lift = |ring: &Vec<Point2<f64>>| {
-        let corners = ring.iter().map(|p| facet.plane.lift(p.x, p.y));
-        corners.collect::<Vec<_>>()
-    };
-    let part = Facet {
-        outer: lift(shape.first()?),
-        holes: shape[1..].iter().map(lift).collect(),
-        ..facet.clone()
-    };
-    let around: f64 = (shape[0].iter().zip(shape[0].iter().cycle().skip(1)))
-        .map(|(p, q)| (q - p).norm())
-        .sum();
+fn part_of(facet: &Facet, shape: &Polygon) -> Option<Facet> {
+    let part = facet.over(shape);
+    let around: f64 = plan_sides(&part.outer).map(|[p, q]| (q - p).norm()).sum();
     // Of a sliver of width w and length l the area is w l and the outline 2 l.
     (part.plan_area().abs() > WELD_M * around).then_some(part)
 }

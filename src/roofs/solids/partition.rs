@@ -11,14 +11,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use i_overlay::core::fill_rule::FillRule;
-use i_overlay::core::overlay_rule::OverlayRule;
-use i_overlay::float::single::SingleFloatOverlay;
-use nalgebra::{Point2, Point3, Vector2};
+use nalgebra::{Point2, Vector2};
 
 use super::rejection::SolidRejection;
-use super::rings::{PlanRegion, doubled_area, regions_from_edges, ring_edges};
-use crate::base::geometry::{Plane, bounds};
+use super::rings::{PlanRegion, area, regions_from_edges, ring_edges};
+use crate::base::geometry::{Plane, Polygon};
 use crate::base::plan_index::PlanIndex;
 use crate::roofs::model::{Facet, WELD_M};
 
@@ -99,9 +96,7 @@ impl PlanPartition {
     fn welded(parts: &[PlanPart], welder: &mut Welder) -> Self {
         let mut partition = Self::default();
         for part in parts {
-            let edges: Vec<_> = part
-                .rings
-                .iter()
+            let edges: Vec<_> = (part.plan.rings.iter())
                 .flat_map(|ring| {
                     let welded: Vec<u32> = ring.iter().map(|p| welder.weld(*p)).collect();
                     ring_edges(&welded)
@@ -124,11 +119,14 @@ impl PlanPartition {
     /// The facets as rings of positions that do not cross themselves.
     fn parts(&self) -> Vec<PlanPart> {
         let ring = |ring: &Vec<u32>| ring.iter().map(|&v| self.positions[v as usize]).collect();
+        let plan = |region: &PlanRegion| Polygon {
+            rings: region.iter().map(ring).collect(),
+        };
         (self.facets.iter())
             .map(|f| PlanPart {
                 source: f.source,
                 plane: f.plane,
-                rings: simple(&f.region.iter().map(ring).collect::<Vec<_>>()),
+                plan: plan(&f.region).unfolded(),
             })
             .collect()
     }
@@ -283,10 +281,7 @@ fn gradient(plane: &Plane) -> f64 {
 
 /// Plan area of a region, m^2.
 fn region_area(region: &PlanRegion, positions: &[Point2<f64>]) -> f64 {
-    region
-        .iter()
-        .map(|r| doubled_area(r, positions) / 2.0)
-        .sum()
+    region.iter().map(|r| area(r, positions)).sum()
 }
 
 /// Do two edges cross in their insides?
@@ -345,25 +340,19 @@ impl Welder {
     }
 }
 
-/// A facet, or what is left of it, as rings of positions.
+/// A facet, or what is left of it.
 struct PlanPart {
     source: usize,
     plane: Plane,
-    rings: Vec<Vec<Point2<f64>>>,
+    plan: Polygon,
 }
 
 /// The facets as rings in plan, without those that have no plan.
 fn flat_parts(facets: &[Facet], rejected: &mut Vec<(usize, SolidRejection)>) -> Vec<PlanPart> {
     let mut parts = Vec::new();
     for (source, facet) in facets.iter().enumerate() {
-        let rings: Vec<Vec<Point2<f64>>> = [oriented(&facet.outer, true)]
-            .into_iter()
-            .chain(facet.holes.iter().map(|hole| oriented(hole, false)))
-            .collect();
-        let finite = rings
-            .iter()
-            .flatten()
-            .all(|p| p.x.is_finite() && p.y.is_finite());
+        let plan = facet.plan().oriented();
+        let finite = (plan.rings.iter().flatten()).all(|p| p.x.is_finite() && p.y.is_finite());
         let n = facet.plane.normal;
         // NaN compares false, so this also catches planes that are not numbers.
         let upright =
@@ -376,29 +365,12 @@ fn flat_parts(facets: &[Facet], rejected: &mut Vec<(usize, SolidRejection)>) -> 
             parts.push(PlanPart {
                 source,
                 plane: facet.plane,
-                rings: simple(&rings),
+                // An outline that folds over at one corner loses the fold, not the facet.
+                plan: plan.unfolded(),
             });
         }
     }
     parts
-}
-
-/// The plan of a ring, turned to run counter-clockwise or clockwise.
-fn oriented(ring: &[Point3<f64>], counter_clockwise: bool) -> Vec<Point2<f64>> {
-    let mut plan: Vec<_> = ring.iter().map(|p| p.xy()).collect();
-    let indices: Vec<u32> = (0..plan.len() as u32).collect();
-    if !plan.is_empty() && (doubled_area(&indices, &plan) > 0.0) != counter_clockwise {
-        plan.reverse();
-    }
-    plan
-}
-
-/// Rings that neither cross themselves nor each other, around what the given ones (outer rings
-/// counter-clockwise, holes clockwise) enclose: an outline that folds over at one corner loses the
-/// fold, not the facet.
-fn simple(rings: &[Vec<Point2<f64>>]) -> Vec<Vec<Point2<f64>>> {
-    let shapes = overlay_filled(rings, &[], OverlayRule::Subject, FillRule::Positive);
-    shapes.into_iter().flatten().collect()
 }
 
 /// Takes every overlap from the lower of the two facets.
@@ -408,21 +380,16 @@ fn without_overlaps(mut parts: Vec<PlanPart>) -> Vec<PlanPart> {
         let mut j = 0;
         while j < i {
             if boxes_meet(&parts[i], &parts[j]) {
-                let overlap = overlay(&parts[i].rings, &parts[j].rings, OverlayRule::Intersect);
-                if !overlap.is_empty() {
+                let overlap = parts[i].plan.and(&parts[j].plan);
+                if !overlap.rings.is_empty() {
                     let loser = if lower_over(&parts[i], &parts[j], &overlap) {
                         i
                     } else {
                         j
                     };
                     let winner = i + j - loser;
-                    let rest = overlay(
-                        &parts[loser].rings,
-                        &parts[winner].rings,
-                        OverlayRule::Difference,
-                    );
                     // All pieces stay in one part: they become separate regions after welding.
-                    parts[loser].rings = rest.into_iter().flatten().collect();
+                    parts[loser].plan = parts[loser].plan.without(&parts[winner].plan);
                 }
             }
             j += 1;
@@ -433,8 +400,8 @@ fn without_overlaps(mut parts: Vec<PlanPart>) -> Vec<PlanPart> {
 }
 
 /// Is `a` below `b` over their overlap? Equal heights: the later facet gives way.
-fn lower_over(a: &PlanPart, b: &PlanPart, overlap: &[Vec<Vec<Point2<f64>>>]) -> bool {
-    let corners = overlap.iter().flatten().flatten();
+fn lower_over(a: &PlanPart, b: &PlanPart, overlap: &Polygon) -> bool {
+    let corners = overlap.rings.iter().flatten();
     corners
         .map(|p| a.plane.z_at(p.x, p.y) - b.plane.z_at(p.x, p.y))
         .sum::<f64>()
@@ -443,39 +410,6 @@ fn lower_over(a: &PlanPart, b: &PlanPart, overlap: &[Vec<Vec<Point2<f64>>>]) -> 
 
 /// Do the bounding boxes of two parts overlap?
 fn boxes_meet(a: &PlanPart, b: &PlanPart) -> bool {
-    let [[la, ha], [lb, hb]] = [a, b].map(|part| bounds(part.rings.iter().flatten().copied()));
+    let [[la, ha], [lb, hb]] = [a, b].map(|part| part.plan.bounds());
     la.x < hb.x && lb.x < ha.x && la.y < hb.y && lb.y < ha.y
-}
-
-/// Boolean of two sets of rings (even-odd), as shapes of rings.
-pub(super) fn overlay(
-    a: &[Vec<Point2<f64>>],
-    b: &[Vec<Point2<f64>>],
-    rule: OverlayRule,
-) -> Vec<Vec<Vec<Point2<f64>>>> {
-    overlay_filled(a, b, rule, FillRule::EvenOdd)
-}
-
-fn overlay_filled(
-    a: &[Vec<Point2<f64>>],
-    b: &[Vec<Point2<f64>>],
-    rule: OverlayRule,
-    fill: FillRule,
-) -> Vec<Vec<Vec<Point2<f64>>>> {
-    let plain = |rings: &[Vec<Point2<f64>>]| -> Vec<Vec<[f64; 2]>> {
-        rings
-            .iter()
-            .map(|ring| ring.iter().map(|p| [p.x, p.y]).collect())
-            .collect()
-    };
-    plain(a)
-        .overlay_as::<i64>(&plain(b), rule, fill)
-        .into_iter()
-        .map(|shape| {
-            shape
-                .into_iter()
-                .map(|ring| ring.into_iter().map(|[x, y]| Point2::new(x, y)).collect())
-                .collect()
-        })
-        .collect()
 }

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Point2;
 
+use crate::base::geometry::{contains, sides, signed_area};
 use crate::base::math;
 
 /// A connected region: the outer ring (counter-clockwise), then its holes (clockwise), as indices
@@ -40,19 +41,14 @@ pub(super) fn regions_from_edges(
     nest(rings, positions)
 }
 
-/// Twice the signed area of a ring, m^2: positive when it runs counter-clockwise.
-pub(super) fn doubled_area(ring: &[u32], positions: &[Point2<f64>]) -> f64 {
-    let at = |i: usize| positions[ring[i % ring.len()] as usize];
-    let origin = at(0);
-    (1..ring.len()).fold(0.0, |sum, i| {
-        let (p, q) = (at(i) - origin, at(i + 1) - origin);
-        sum + p.perp(&q)
-    })
+/// Signed area of a ring, m^2: positive when it runs counter-clockwise.
+pub(super) fn area(ring: &[u32], positions: &[Point2<f64>]) -> f64 {
+    signed_area(ring.iter().map(|&v| positions[v as usize]))
 }
 
 /// The directed edges of a closed ring.
 pub(super) fn ring_edges(ring: &[u32]) -> impl Iterator<Item = (u32, u32)> + '_ {
-    (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()]))
+    sides(ring).map(|[a, b]| (a, b))
 }
 
 /// Follows edges from `start`, taking them out of `open`, until the ring closes.
@@ -119,33 +115,25 @@ fn nest(rings: Vec<Vec<u32>>, positions: &[Point2<f64>]) -> Vec<PlanRegion> {
     let (outers, holes): (Vec<_>, Vec<_>) = rings
         .into_iter()
         .filter(|ring| ring.len() >= 3)
-        .partition(|ring| doubled_area(ring, positions) > 0.0);
+        .partition(|ring| area(ring, positions) > 0.0);
     let mut regions: Vec<PlanRegion> = outers.into_iter().map(|ring| vec![ring]).collect();
     for hole in holes {
         // A hole may share vertices with its outer ring but no edge, so an edge's middle is inside.
         let (a, b) = (positions[hole[0] as usize], positions[hole[1] as usize]);
         let inside = nalgebra::center(&a, &b);
+        let around = |ring: &[u32]| {
+            let sides = sides(ring).map(|side| side.map(|v| positions[v as usize]));
+            contains(sides, &inside)
+        };
         let home = regions
             .iter_mut()
-            .filter(|region| contains(&region[0], &inside, positions))
-            .min_by(|p, q| {
-                doubled_area(&p[0], positions).total_cmp(&doubled_area(&q[0], positions))
-            });
+            .filter(|region| around(&region[0]))
+            .min_by(|p, q| area(&p[0], positions).total_cmp(&area(&q[0], positions)));
         if let Some(region) = home {
             region.push(hole);
         }
     }
     regions
-}
-
-/// Does the ring contain the point? (Even-odd rule.)
-fn contains(ring: &[u32], point: &Point2<f64>, positions: &[Point2<f64>]) -> bool {
-    ring_edges(ring).fold(false, |inside, (a, b)| {
-        let (p, q) = (positions[a as usize], positions[b as usize]);
-        let crosses = (p.y > point.y) != (q.y > point.y)
-            && point.x < p.x + (q.x - p.x) * (point.y - p.y) / (q.y - p.y);
-        inside != crosses
-    })
 }
 
 #[cfg(test)]
@@ -172,8 +160,8 @@ mod tests {
         let regions = regions_from_edges(&edges(&[pinched]), &positions);
         assert_eq!(regions.len(), 1);
         assert_eq!(regions[0].len(), 2);
-        assert_eq!(doubled_area(&regions[0][0], &positions), 32.0);
-        assert_eq!(doubled_area(&regions[0][1], &positions), -3.0);
+        assert_eq!(area(&regions[0][0], &positions), 16.0);
+        assert_eq!(area(&regions[0][1], &positions), -1.5);
     }
 
     #[test]

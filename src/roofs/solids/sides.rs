@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Point2, Point3, Vector2};
 
+use crate::base::geometry::sides;
 use crate::base::math::hypot;
 use crate::roofs::model::Facet;
 
@@ -73,8 +74,8 @@ pub(super) fn left_of(v: &Vector2<f64>) -> Vector2<f64> {
 /// The sides of what some facets cover together: edges that no other of them has.
 pub fn outline_sides(facets: &[&Facet]) -> Vec<Side> {
     let edges: Vec<[Point3<f64>; 2]> = (facets.iter())
-        .flat_map(|f| std::iter::once(&f.outer).chain(&f.holes))
-        .flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]))
+        .flat_map(|f| f.rings())
+        .flat_map(|ring| sides(ring))
         .collect();
     let taken: BTreeSet<_> = edges.iter().map(|[a, b]| [key(a), key(b)]).collect();
     let mut open: Vec<[Point3<f64>; 2]> = (edges.into_iter())
@@ -140,10 +141,7 @@ mod tests {
         for side in &sides {
             let middle = side.start().xy() + side.along() * (0.5 * side.length());
             let inside = middle + side.inward() * 0.1;
-            let covered = facets
-                .iter()
-                .any(|f| crate::roofs::model::inside(&f.outer, &inside));
-            assert!(covered);
+            assert!(facets.iter().any(|f| f.covers(&inside)));
             assert_eq!(side.rim.len(), if side.is_level() { 2 } else { 3 });
             assert_eq!(side.rim_at(-0.1), None);
             let top = side.rim_at(0.5 * side.length()).unwrap();

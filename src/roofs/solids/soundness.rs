@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Point3, Vector3};
 
+use crate::base::geometry::sides;
 use crate::roofs::model::{Solid, triangulate};
 
 /// Step of the coordinates in files, metres.
@@ -137,9 +138,8 @@ fn triangles_meet(corners: &[Exact], s: &[u32; 3], t: &[u32; 3]) -> bool {
         own.map(|v| at(*v)).collect()
     };
     let (of_s, of_t) = (own(s), own(t));
-    let any_side = |of: &[Exact; 3], meets: &[Exact; 3]| {
-        (0..3).any(|i| side_meets([of[i], of[(i + 1) % 3]], meets))
-    };
+    let any_side =
+        |of: &[Exact; 3], meets: &[Exact; 3]| sides(of).any(|side| side_meets(side, meets));
     match common.len() {
         0 => any_side(&in_s, &in_t) || any_side(&in_t, &in_s),
         1 => side_meets([of_s[0], of_s[1]], &in_t) || side_meets([of_t[0], of_t[1]], &in_s),
@@ -163,23 +163,22 @@ fn normal([a, b, c]: &[Exact; 3]) -> Exact {
 fn side_meets([p, q]: [Exact; 2], triangle: &[Exact; 3]) -> bool {
     let n = normal(triangle);
     let [from, to] = [p, q].map(|r| n.dot(&(r - triangle[0])).signum());
-    let sides = || (0..3).map(|i| (triangle[i], triangle[(i + 1) % 3]));
     if from * to > 0 {
         return false;
     }
     if (from, to) == (0, 0) {
         // In one plane: left and right of lines are seen along its normal.
         let turn = |a: Exact, b: Exact, c: Exact| n.dot(&normal(&[a, b, c])).signum();
-        let within = |r: Exact| sides().all(|(a, b)| turn(a, b, r) >= 0);
-        let crosses = |(a, b): (Exact, Exact)| {
+        let within = |r: Exact| sides(triangle).all(|[a, b]| turn(a, b, r) >= 0);
+        let crosses = |[a, b]: [Exact; 2]| {
             turn(a, b, p) * turn(a, b, q) <= 0
                 && turn(p, q, a) * turn(p, q, b) <= 0
                 // On one line they may lie apart.
                 && (0..3).all(|k| a[k].min(b[k]) <= p[k].max(q[k]) && p[k].min(q[k]) <= a[k].max(b[k]))
         };
-        return within(p) || within(q) || sides().any(crosses);
+        return within(p) || within(q) || sides(triangle).any(crosses);
     }
-    let around = || sides().map(|(a, b)| (q - p).cross(&(a - p)).dot(&(b - p)).signum());
+    let around = || sides(triangle).map(|[a, b]| (q - p).cross(&(a - p)).dot(&(b - p)).signum());
     around().all(|side| side >= 0) || around().all(|side| side <= 0)
 }
 

@@ -1,7 +1,7 @@
 //! Solids of planted roofs, and what goes wrong with broken ones.
 
 use super::*;
-use crate::base::geometry::Plane;
+use crate::base::geometry::{Plane, sides};
 use crate::roofs::model::{Violation, check_invariants};
 use nalgebra::{Point2, Point3, Vector3};
 use proptest::prelude::*;
@@ -190,16 +190,9 @@ fn a_courtyard_that_touches_the_outline_in_a_corner_is_drawn_back() {
         let model = closed(facets);
         let building = &model.buildings[0];
         check_apart(building);
-        let triangle = |[a, b, c]: [Point2<f64>; 3]| 0.5 * (b - a).perp(&(c - a));
         let solid = &building.solid;
         let ground = solid.faces.iter().filter(|f| f.surface == Surface::Ground);
-        let rings = ground.flat_map(|f| &f.rings);
-        let area = |ring: &Vec<u32>| {
-            let corner = |i: usize| solid.vertices[ring[i] as usize].xy();
-            let fan = (1..ring.len() - 1).map(|i| triangle([corner(0), corner(i), corner(i + 1)]));
-            fan.sum::<f64>()
-        };
-        let area = rings.map(area).sum::<f64>().abs();
+        let area: f64 = ground.map(|f| -solid.vector_area(&f.rings).z).sum();
         assert!((area - 84.0).abs() < 0.05, "{area}");
     }
 }
@@ -224,7 +217,7 @@ fn a_jog_of_a_millimetre_is_no_part_of_a_long_wall() {
         };
         let start = far(ring[0]);
         let along = (far(start) - start).normalize();
-        for (p, q) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+        for [p, q] in sides(&ring) {
             let d = q - p;
             assert!(d.perp(&along).abs() <= 0.2 * d.norm(), "{p} to {q}");
         }

@@ -156,7 +156,9 @@ fn describe(p: &ImagePartition) -> Segmentation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::geometry::{contains, sides};
     use crate::photographs::raster::Gray;
+    use nalgebra::Point2;
 
     /// A drawn partition: a house-like pentagon and a rectangle on a background, with noise of 10
     /// grey levels.
@@ -171,12 +173,6 @@ mod tests {
                 190.0,
             ),
         ];
-        let inside = |ring: &[[f64; 2]], x: f64, y: f64| {
-            (0..ring.len()).all(|i| {
-                let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-                (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]) > 0.0
-            })
-        };
         let mut state = seed;
         let mut noise = || {
             // Sum of twelve uniform numbers: nearly Gaussian.
@@ -197,9 +193,8 @@ mod tests {
             let (x, y) = (x as f64 + 0.5, y as f64 + 0.5);
             let mut level = 90.0;
             for (ring, (_, value)) in rings.iter().zip(&shapes) {
-                let mut back = ring.clone();
-                back.reverse();
-                if inside(ring, x, y) || inside(&back, x, y) {
+                let sides = sides(ring).map(|side| side.map(Point2::from));
+                if contains(sides, &Point2::new(x, y)) {
                     level = *value;
                 }
             }

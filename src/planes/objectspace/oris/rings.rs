@@ -62,6 +62,7 @@ fn turn(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::geometry::signed_area;
 
     #[test]
     fn a_region_in_a_region_gives_a_hole() {
@@ -89,15 +90,7 @@ mod tests {
         let found = rings(&vectors, 2);
         assert_eq!((found[0].len(), found[1].len()), (2, 1));
         assert_eq!(found[1][0], [[3, 3], [6, 3], [6, 6], [3, 6]]);
-        let area = |ring: &[[i32; 2]]| -> i32 {
-            (0..ring.len())
-                .map(|i| {
-                    let (p, q) = (ring[i], ring[(i + 1) % ring.len()]);
-                    p[0] * q[1] - p[1] * q[0]
-                })
-                .sum::<i32>()
-                / 2
-        };
-        assert_eq!((area(&found[0][0]), area(&found[0][1])), (81, -9));
+        let area = |ring: &[[i32; 2]]| signed_area(ring.iter().map(|p| p.map(f64::from).into()));
+        assert_eq!((area(&found[0][0]), area(&found[0][1])), (81.0, -9.0));
     }
 }

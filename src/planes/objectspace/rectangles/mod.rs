@@ -53,7 +53,7 @@ use nalgebra::Point3;
 
 use self::ends::{crossings, ends, slanted_ends};
 use self::occluding_solids::partly_hidden;
-use self::plane_evidence::{PlaneAgreement, PlaneConsistency, area_2d};
+use self::plane_evidence::{PlaneAgreement, PlaneConsistency, plan_area};
 use self::shapes::{LEAST_WIDTH_M, StripLine, StripPolygon, quadrilaterals, triangle};
 use self::strip::PlaneStrip;
 use super::clusters::{ClusterAxes, ClusterLine, overlap};
@@ -262,7 +262,7 @@ impl PlaneSearch<'_> {
                     outline_on_lines: shape.support,
                     cos_slope: plane.normal.z,
                 };
-                let area_m2 = area_2d(&ring);
+                let area_m2 = plan_area(&ring);
                 let may_live = area_m2 / plane.normal.z >= self.params.min_area_m2
                     && features.evidence().accepts(self.params.least_nats);
                 may_live.then(|| PlaneCandidate {

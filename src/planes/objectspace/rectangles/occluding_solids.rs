@@ -8,7 +8,7 @@
 
 use nalgebra::{Point2, Point3};
 
-use crate::base::geometry::{Plane, mean_point};
+use crate::base::geometry::{Plane, mean_point, sides};
 use crate::base::math::{larger, smaller};
 use crate::orienting::scene::Scene;
 
@@ -73,15 +73,10 @@ impl OccludingSolid {
         })
     }
 
-    fn sides(&self) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> {
-        let n = self.ring.len();
-        (0..n).map(move |i| (self.ring[i], self.ring[(i + 1) % n]))
-    }
-
     /// The part of the way from `p` (0) to `q` (1) that runs over the outline.
     fn crossed(&self, p: &Point2<f64>, q: &Point2<f64>) -> Option<[f64; 2]> {
         let (mut enter, mut leave) = (0.0f64, 1.0f64);
-        for (a, b) in self.sides() {
+        for [a, b] in sides(&self.ring) {
             let (dp, dq) = (side(&a, &b, p), side(&a, &b, q));
             if dp < 0.0 && dq < 0.0 {
                 return None;

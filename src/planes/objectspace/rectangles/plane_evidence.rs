@@ -1,11 +1,11 @@
 //! The evidence of the images for a plane: how well they agree when warped to it, and how much
 //! better than on planes displaced up and down.
 
-use nalgebra::{Point2, Point3, Vector2};
+use nalgebra::{Point3, Vector2};
 
 use super::occluding_solids::OccludingSolid;
 use crate::base::evidence::WindowEvidenceTable;
-use crate::base::geometry::Plane;
+use crate::base::geometry::{Plane, bounds, plan_sides, signed_area, span};
 use crate::base::math::larger;
 use crate::orienting::scene::Scene;
 use crate::planes::photoconsistency::{
@@ -13,13 +13,8 @@ use crate::planes::photoconsistency::{
 };
 
 /// Signed area in plan, square metres.
-pub(crate) fn area_2d(ring: &[Point3<f64>]) -> f64 {
-    (0..ring.len())
-        .map(|i| {
-            let (p, q) = (&ring[i], &ring[(i + 1) % ring.len()]);
-            0.5 * (p.x * q.y - p.y * q.x)
-        })
-        .sum()
+pub(super) fn plan_area(ring: &[Point3<f64>]) -> f64 {
+    signed_area(ring.iter().map(Point3::xy))
 }
 
 /// Compares the views on one plane and on planes beside it.
@@ -109,7 +104,7 @@ impl<'a> PlaneConsistency<'a> {
         let column = |x: f64| ((x - grid.origin.x) / grid.step - 0.5).ceil().max(0.0) as usize;
         let mut cells = Vec::new();
         for row in 0..grid.height {
-            if let Some([x0, x1]) = span(ring, grid.center(0, row).y) {
+            if let Some([x0, x1]) = span(plan_sides(ring), grid.center(0, row).y) {
                 let columns = column(x0)..column(x1).min(grid.width);
                 cells.extend(columns.map(|c| row * grid.width + c));
             }
@@ -158,17 +153,7 @@ fn compare(
 
 /// A plan grid over all rings with samples as fine as the finest image.
 fn grid_over(scene: &Scene, rings: &[Vec<Point3<f64>>], at: &Point3<f64>) -> Option<PlanGrid> {
-    let corners = || rings.iter().flatten();
-    let bound = |start: f64, f: fn(f64, f64) -> f64| {
-        Point2::new(
-            corners().map(|p| p.x).fold(start, f),
-            corners().map(|p| p.y).fold(start, f),
-        )
-    };
-    let (min, max) = (
-        bound(f64::INFINITY, f64::min),
-        bound(f64::NEG_INFINITY, f64::max),
-    );
+    let [min, max] = bounds(rings.iter().flatten().map(Point3::xy));
     let size = max - min;
     let step =
         PlanGrid::cell_of_pixels(finest_m(scene, at)).max((size.x * size.y / MOST_CELLS).sqrt());
@@ -222,21 +207,7 @@ fn shrunk(ring: &[Point3<f64>], by: f64) -> Option<Vec<Point3<f64>>> {
         let j = (i + 1) % n;
         (moved[j] - moved[i]).xy().dot(&(ring[j] - ring[i]).xy()) > 0.0
     });
-    (inwards && area_2d(&moved) > 0.15 * area_2d(ring)).then_some(moved)
-}
-
-/// The range of x inside a convex ring at a y.
-fn span(ring: &[Point3<f64>], y: f64) -> Option<[f64; 2]> {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for i in 0..ring.len() {
-        let (p, q) = (&ring[i], &ring[(i + 1) % ring.len()]);
-        if (p.y <= y) != (q.y <= y) {
-            let x = p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
-            low = low.min(x);
-            high = high.max(x);
-        }
-    }
-    (low < high).then_some([low, high])
+    (inwards && plan_area(&moved) > 0.15 * plan_area(ring)).then_some(moved)
 }
 
 #[cfg(test)]
@@ -251,8 +222,8 @@ mod tests {
                 .to_vec()
         };
         let core = shrunk(&ring(6.0), 1.0).unwrap();
-        assert!((area_2d(&core) - 28.0).abs() < 1e-9);
-        assert_eq!(span(&core, 3.0), Some([1.0, 8.0]));
+        assert!((plan_area(&core) - 28.0).abs() < 1e-9);
+        assert_eq!(span(plan_sides(&core), 3.0), Some([1.0, 8.0]));
         assert!(shrunk(&ring(1.5), 1.0).is_none());
     }
 }

@@ -6,12 +6,10 @@
 //! of conflicts start from the greedy set and exchange one candidate for those that it excludes
 //! while the sum grows.
 
-use i_overlay::core::fill_rule::FillRule;
-use i_overlay::core::overlay_rule::OverlayRule;
-use i_overlay::float::single::SingleFloatOverlay;
+use nalgebra::Point3;
 
 use super::candidate::PlaneCandidate;
-use super::plane_evidence::area_2d;
+use crate::base::geometry::Polygon;
 
 /// Candidates that overlap by more than this share of the smaller one exclude each other.
 /// Assumption: what errors of their ends do at shared sides.
@@ -47,23 +45,9 @@ pub(crate) fn best_set(candidates: &[PlaneCandidate]) -> Vec<usize> {
 
 /// Do two candidates cover the same ground?
 fn exclude(a: &PlaneCandidate, b: &PlaneCandidate) -> bool {
-    // As every other call in the project has it: another type would be compiled anew, 0.2 MB of
-    // wasm.
-    let rings = |c: &PlaneCandidate| -> Vec<Vec<[f64; 2]>> {
-        vec![c.ring.iter().map(|p| [p.x, p.y]).collect()]
-    };
-    let shared = rings(a).overlay_as::<i64>(&rings(b), OverlayRule::Intersect, FillRule::NonZero);
-    let area: f64 = shared.iter().flatten().map(|r| ring_area(r)).sum();
-    area.abs() > MOST_OVERLAP * area_2d(&a.ring).min(area_2d(&b.ring))
-}
-
-fn ring_area(ring: &[[f64; 2]]) -> f64 {
-    (0..ring.len())
-        .map(|i| {
-            let (p, q) = (ring[i], ring[(i + 1) % ring.len()]);
-            0.5 * (p[0] * q[1] - p[1] * q[0])
-        })
-        .sum()
+    let [a, b] = [a, b].map(|c| Polygon::from(c.ring.iter().map(Point3::xy).collect::<Vec<_>>()));
+    let most = MOST_OVERLAP * a.signed_area().min(b.signed_area());
+    a.and(&b).signed_area() > most
 }
 
 /// Connected groups of conflicts.

@@ -4,7 +4,7 @@
 use nalgebra::Point3;
 
 use super::ends::{POSITION_M, PlaneEnd, side_support};
-use super::plane_evidence::area_2d;
+use super::plane_evidence::plan_area;
 use super::strip::PlaneStrip;
 use crate::base::ids::ViewId;
 
@@ -49,7 +49,7 @@ impl StripPolygon {
     pub(super) fn ring(&self, strip: &PlaneStrip) -> Vec<Point3<f64>> {
         let point = |c: &[f64; 2]| strip.point(c[0], c[1]);
         let mut ring: Vec<_> = self.corners.iter().map(point).collect();
-        if area_2d(&ring) < 0.0 {
+        if plan_area(&ring) < 0.0 {
             ring.reverse();
         }
         ring

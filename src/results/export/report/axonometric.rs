@@ -3,13 +3,11 @@
 //! Faces are drawn from the back to the front. Of two faces whose pictures overlap, the one nearer
 //! to the viewer in the middle of the overlap comes later; faces of a closed solid do not cross.
 
-use i_overlay::core::fill_rule::FillRule;
-use i_overlay::core::overlay_rule::OverlayRule;
-use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::reported::ReportedModel;
 use super::svg::{Drawing, place_inside};
+use crate::base::geometry::{Polygon, bounds, signed_area};
 use crate::base::math::{atan2, sin_cos};
 use crate::roofs::model::{Building, Surface};
 
@@ -67,7 +65,7 @@ impl Viewer {
 /// A face that the viewer sees.
 struct SeenFace {
     surface: Surface,
-    rings: Vec<Vec<Point2<f64>>>,
+    picture: Polygon,
     normal: Vector3<f64>,
     corner: Point3<f64>,
 }
@@ -79,10 +77,6 @@ impl SeenFace {
         let distance = self.normal.dot(&(self.corner.coords - through));
         distance / self.normal.dot(&viewer.towards)
     }
-
-    fn bounds(&self) -> [Point2<f64>; 2] {
-        crate::base::geometry::bounds(self.rings.iter().flatten().copied())
-    }
 }
 
 /// The picture of a building, its facets with their numbers.
@@ -93,8 +87,7 @@ pub(super) fn axonometric(reported: &ReportedModel, index: usize) -> String {
     let direction = longest.map_or_else(Vector2::x, |e| e.edge.segment.direction().xy());
     let viewer = Viewer::beside(direction);
     let faces = seen_faces(building, &viewer);
-    let all = || faces.iter().flat_map(|f| f.rings.iter().flatten().copied());
-    let [low, high] = crate::base::geometry::bounds(all());
+    let [low, high] = bounds(faces.iter().flat_map(|f| f.picture.bounds()));
     let (extent, room) = (high - low, PAGE - Vector2::repeat(2.0 * MARGIN));
     let scale = (room.x / extent.x.max(1e-6)).min(room.y / extent.y.max(1e-6));
     let size = extent * scale + Vector2::repeat(2.0 * MARGIN);
@@ -106,12 +99,13 @@ pub(super) fn axonometric(reported: &ReportedModel, index: usize) -> String {
     let mut drawing = Drawing::new(size, &title);
     for face in back_to_front(&faces, &viewer) {
         let face = &faces[face];
-        let rings: Vec<Vec<_>> = (face.rings.iter())
-            .map(|ring| ring.iter().map(on_paper).collect())
-            .collect();
-        drawing.area(&rings, &format!("class=\"face\" fill=\"{}\"", colour(face)));
+        let picture = face.picture.mapped(on_paper);
+        drawing.area(
+            &picture,
+            &format!("class=\"face\" fill=\"{}\"", colour(face)),
+        );
         if let Surface::Roof(facet) = face.surface {
-            drawing.words(place_inside(&rings), 0.0, "number", &facet.0.to_string());
+            drawing.words(place_inside(&picture), 0.0, "number", &facet.0.to_string());
         }
     }
     drawing.finish()
@@ -125,7 +119,9 @@ fn seen_faces(building: &Building, viewer: &Viewer) -> Vec<SeenFace> {
         let project = |ring: &Vec<u32>| ring.iter().map(|v| viewer.project(&corner(v))).collect();
         (normal.dot(&viewer.towards) > EDGE_ON).then(|| SeenFace {
             surface: face.surface,
-            rings: face.rings.iter().map(project).collect(),
+            picture: Polygon {
+                rings: face.rings.iter().map(project).collect(),
+            },
             normal,
             corner: corner(&face.rings[0][0]),
         })
@@ -135,7 +131,7 @@ fn seen_faces(building: &Building, viewer: &Viewer) -> Vec<SeenFace> {
 
 /// The order in which faces are drawn.
 fn back_to_front(faces: &[SeenFace], viewer: &Viewer) -> Vec<usize> {
-    let bounds: Vec<_> = faces.iter().map(SeenFace::bounds).collect();
+    let bounds: Vec<_> = faces.iter().map(|f| f.picture.bounds()).collect();
     let apart = |i: usize, j: usize| {
         let ([a, b], [c, d]) = (bounds[i], bounds[j]);
         (0..2).any(|axis| b[axis] <= c[axis] || d[axis] <= a[axis])
@@ -144,7 +140,7 @@ fn back_to_front(faces: &[SeenFace], viewer: &Viewer) -> Vec<usize> {
     let mut behind = vec![Vec::new(); faces.len()];
     for i in 0..faces.len() {
         for j in (0..i).filter(|&j| !apart(i, j)) {
-            if let Some(place) = common_place(&faces[i].rings, &faces[j].rings) {
+            if let Some(place) = common_place(&faces[i].picture, &faces[j].picture) {
                 let [a, b] = [i, j].map(|f| faces[f].nearness(viewer, &place));
                 let (near, far) = if a > b { (i, j) } else { (j, i) };
                 behind[near].push(far);
@@ -167,27 +163,11 @@ fn back_to_front(faces: &[SeenFace], viewer: &Viewer) -> Vec<usize> {
 }
 
 /// The middle of the largest part that two pictures have in common.
-fn common_place(a: &[Vec<Point2<f64>>], b: &[Vec<Point2<f64>>]) -> Option<Point2<f64>> {
-    let plain = |rings: &[Vec<Point2<f64>>]| -> Vec<Vec<[f64; 2]>> {
-        let ring = |ring: &Vec<Point2<f64>>| ring.iter().map(|p| [p.x, p.y]).collect();
-        rings.iter().map(ring).collect()
-    };
-    let shapes = plain(a).overlay_as::<i64>(&plain(b), OverlayRule::Intersect, FillRule::EvenOdd);
-    let outer = shapes.iter().filter_map(|shape| shape.first());
-    let area = |ring: &Vec<[f64; 2]>| {
-        let next = ring.iter().cycle().skip(1);
-        let twice = ring
-            .iter()
-            .zip(next)
-            .map(|(p, q)| p[0] * q[1] - p[1] * q[0]);
-        twice.sum::<f64>().abs() / 2.0
-    };
-    let largest = outer.max_by(|p, q| area(p).total_cmp(&area(q)))?;
-    if area(largest) < LEAST_OVERLAP_M2 {
-        return None;
-    }
-    let ring: Vec<Point2<f64>> = largest.iter().map(|&p| p.into()).collect();
-    Some(place_inside(&[ring]))
+fn common_place(a: &Polygon, b: &Polygon) -> Option<Point2<f64>> {
+    let common = a.and(b);
+    let area = |ring: &Vec<Point2<f64>>| signed_area(ring.iter().copied());
+    let largest = (common.rings.iter()).max_by(|p, q| area(p).total_cmp(&area(q)))?;
+    (area(largest) >= LEAST_OVERLAP_M2).then(|| place_inside(&largest.clone().into()))
 }
 
 /// Tiles or plaster, in the light from the upper left.
@@ -226,19 +206,15 @@ mod tests {
         let faces = seen_faces(&model.buildings[0], &viewer);
         let order = back_to_front(&faces, &viewer);
         // Every place shows the nearest of the faces there.
-        let [low, high] = crate::base::geometry::bounds(faces.iter().flat_map(|f| f.bounds()));
+        let [low, high] = bounds(faces.iter().flat_map(|f| f.picture.bounds()));
         let mut places = 0;
         for i in 0..1600 {
             let share = Vector2::new(f64::from(i % 40) + 0.37, f64::from(i / 40) + 0.61) / 40.0;
             let p = low + (high - low).component_mul(&share);
-            let lifted = |ring: &Vec<Point2<f64>>| -> Vec<Point3<f64>> {
-                ring.iter().map(|q| Point3::new(q.x, q.y, 0.0)).collect()
-            };
-            let covers = |f: &SeenFace| crate::roofs::model::inside(&lifted(&f.rings[0]), &p);
             let here: Vec<usize> = order
                 .iter()
                 .copied()
-                .filter(|&f| covers(&faces[f]))
+                .filter(|&f| faces[f].picture.contains(&p))
                 .collect();
             let nearness = |f: &usize| faces[*f].nearness(&viewer, &p);
             let nearest = here

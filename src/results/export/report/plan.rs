@@ -4,6 +4,7 @@ use nalgebra::{Point2, Point3, Vector2};
 
 use super::reported::ReportedModel;
 use super::svg::{Drawing, place_inside};
+use crate::base::geometry::Polygon;
 use crate::base::math::atan2;
 use crate::results::roof_report::{BuildingReport, RoofEdge};
 use crate::roofs::model::Facet;
@@ -67,11 +68,11 @@ impl Sheet {
         Point2::new(x + MARGIN, y + MARGIN)
     }
 
-    fn rings(&self, facet: &Facet) -> Vec<Vec<Point2<f64>>> {
-        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-        rings
-            .map(|ring| ring.iter().map(|p| self.at(p)).collect())
-            .collect()
+    fn picture(&self, facet: &Facet) -> Polygon {
+        let ring = |ring: &Vec<Point3<f64>>| ring.iter().map(|p| self.at(p)).collect();
+        Polygon {
+            rings: facet.rings().map(ring).collect(),
+        }
     }
 
     /// A bar of a round length and an arrow to the north.
@@ -121,7 +122,7 @@ pub(super) fn building_plan(reported: &ReportedModel, report: &BuildingReport) -
     let name = &reported.names[report.building.index()];
     let mut drawing = Drawing::new(sheet.size(), &format!("Plan of {name}"));
     for facet in facets() {
-        drawing.area(&sheet.rings(facet), "class=\"facet\"");
+        drawing.area(&sheet.picture(facet), "class=\"facet\"");
     }
     for edge in &report.edges {
         let segment = &edge.edge.segment;
@@ -132,7 +133,7 @@ pub(super) fn building_plan(reported: &ReportedModel, report: &BuildingReport) -
         draw_dimension(&sheet, &mut drawing, &edge.edge, edge.length_m.value);
     }
     for (facet, of) in facets().zip(&report.facets) {
-        let middle = place_inside(&sheet.rings(facet));
+        let middle = place_inside(&sheet.picture(facet));
         if of.azimuth_deg.is_some() {
             // Downhill, on paper.
             let fall = facet.plane.normal.xy().normalize();
@@ -184,7 +185,7 @@ pub(super) fn overview(reported: &ReportedModel) -> Plan {
     let (sheet, scale) = Sheet::new(reported.model.facets.iter().flat_map(|f| &f.outer));
     let mut drawing = Drawing::new(sheet.size(), "Plan of all buildings");
     for facet in &reported.model.facets {
-        drawing.area(&sheet.rings(facet), "class=\"facet thin\"");
+        drawing.area(&sheet.picture(facet), "class=\"facet thin\"");
     }
     for report in &reported.buildings {
         let facets = report.facets.iter();
@@ -192,7 +193,7 @@ pub(super) fn overview(reported: &ReportedModel) -> Plan {
         let largest = largest.expect("a building has facets");
         let facet = &reported.model.facets[largest.facet.index()];
         let number = report.building.0.to_string();
-        drawing.words(place_inside(&sheet.rings(facet)), 0.0, "number", &number);
+        drawing.words(place_inside(&sheet.picture(facet)), 0.0, "number", &number);
     }
     sheet.draw_scale(&mut drawing);
     Plan {

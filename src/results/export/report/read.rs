@@ -6,7 +6,7 @@
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
-use crate::base::geometry::{Plane, mean_point};
+use crate::base::geometry::{Plane, mean_point, plan_sides, vector_area};
 use crate::base::ids::{BuildingId, FacetId};
 use crate::roofs::model::{
     Building, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
@@ -216,12 +216,8 @@ fn ring_of(ring: &Value, vertices: &[Point3<f64>]) -> Option<Vec<Point3<f64>>> {
 /// The plane of a roof, from the vector area of its rings through their middle; `None` where it
 /// does not look up.
 fn plane_of(rings: &[Vec<Point3<f64>>]) -> Option<Plane> {
-    let mut area = Vector3::zeros();
-    for ring in rings {
-        for i in 1..ring.len() - 1 {
-            area += (ring[i] - ring[0]).cross(&(ring[i + 1] - ring[0])) / 2.0;
-        }
-    }
+    let areas = rings.iter().map(|ring| vector_area(ring.iter().copied()));
+    let area: Vector3<f64> = areas.sum();
     let looks_up = |plane: &Plane| plane.normal.z > LEAST_NORMAL_Z;
     let middle = mean_point(&rings[0]);
     let plane = Plane::from_point_normal(&middle, &area).filter(looks_up);
@@ -273,11 +269,11 @@ fn sides_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<Vec<SideUncer
     for (i, ring) in rings.iter().enumerate() {
         let [sigmas, supports] = [sigmas, supports].map(|of| of.get(i).and_then(list));
         let (sigmas, supports) = (sigmas?, supports?);
-        for (k, p) in ring.iter().enumerate() {
+        for (k, ends) in plan_sides(ring).enumerate() {
             let (sigma, support) = (sigmas.get(k)?, supports.get(k)?);
             if !sigma.is_null() {
                 sides.push(SideUncertainty {
-                    ends: [p.xy(), ring[(k + 1) % ring.len()].xy()],
+                    ends,
                     sigma_m: sigma.as_f64()?,
                     support: SideSupport::named(support.as_str()?)?,
                 });

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::base::geometry::Polygon;
 use nalgebra::{Point2, Vector2};
 
 /// A picture in the making: x right, y down, millimetres.
@@ -25,9 +26,9 @@ impl Drawing {
     }
 
     /// An area with holes; `attributes` say how it looks.
-    pub(super) fn area(&mut self, rings: &[Vec<Point2<f64>>], attributes: &str) {
+    pub(super) fn area(&mut self, polygon: &Polygon, attributes: &str) {
         let mut path = String::new();
-        for ring in rings {
+        for ring in &polygon.rings {
             for (i, p) in ring.iter().enumerate() {
                 let command = if i == 0 { 'M' } else { 'L' };
                 write!(path, "{command}{} {}", mm(p.x), mm(p.y)).expect(WRITES);
@@ -86,35 +87,18 @@ pub(super) fn escaped(text: &str) -> String {
     escaped
 }
 
-/// A place well inside rings, for a word: of a grid the point farthest from all sides.
-pub(super) fn place_inside(rings: &[Vec<Point2<f64>>]) -> Point2<f64> {
+/// A place well inside a polygon, for a word: of a grid the point farthest from all sides.
+pub(super) fn place_inside(polygon: &Polygon) -> Point2<f64> {
     // Points of the grid a side. Assumption: a word needs no better place than a fourteenth of the
     // shape.
     const GRID_STEPS: usize = 14;
-    let [low, high] = crate::base::geometry::bounds(rings.iter().flatten().copied());
-    let sides = || {
-        rings.iter().flat_map(|ring| {
-            let next = ring.iter().cycle().skip(1);
-            ring.iter().zip(next)
-        })
-    };
-    // Negative outside (even-odd rule).
-    let depth = |p: &Point2<f64>| {
-        let (mut nearest, mut is_inside) = (f64::INFINITY, false);
-        for (a, b) in sides() {
-            let d = b - a;
-            let t = ((p - a).dot(&d) / d.norm_squared().max(1e-12)).clamp(0.0, 1.0);
-            nearest = nearest.min((p - (a + d * t)).norm());
-            is_inside ^= (a.y > p.y) != (b.y > p.y) && p.x < a.x + d.x * (p.y - a.y) / d.y;
-        }
-        if is_inside { nearest } else { -nearest }
-    };
+    let [low, high] = polygon.bounds();
     let at = |i: usize| (i as f64 + 0.5) / GRID_STEPS as f64;
     let grid = (0..GRID_STEPS * GRID_STEPS).map(|i| {
         let share = Vector2::new(at(i % GRID_STEPS), at(i / GRID_STEPS));
         low + (high - low).component_mul(&share)
     });
-    let deepest = grid.max_by(|p, q| depth(p).total_cmp(&depth(q)));
+    let deepest = grid.max_by(|p, q| polygon.depth(p).total_cmp(&polygon.depth(q)));
     deepest.expect("a grid has points")
 }
 
@@ -137,7 +121,7 @@ mod tests {
             (3.0, 9.0),
             (0.0, 9.0),
         ];
-        let p = place_inside(&[ring.map(|(x, y)| Point2::new(x, y)).to_vec()]);
+        let p = place_inside(&ring.map(|(x, y)| Point2::new(x, y)).to_vec().into());
         assert!(p.x < 3.0 && p.y < 3.0, "{p}");
     }
 }

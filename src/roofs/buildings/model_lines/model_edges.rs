@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Point3;
 
-use crate::base::geometry::Segment3;
+use crate::base::geometry::{self, Segment3};
 use crate::base::ids::FacetId;
 use crate::lines::lines3d::LineOrigin;
 use crate::roofs::model::Facet;
@@ -37,7 +37,7 @@ pub(super) fn model_edges(facets: &[Facet]) -> Vec<ModelEdge> {
     let mut edges = Vec::new();
     for (f, facet) in facets.iter().enumerate() {
         let id = FacetId::from_index(f);
-        for ring in [&facet.outer].into_iter().chain(&facet.holes) {
+        for ring in facet.rings() {
             for (side, beyond) in straight_edges(ring, |a, b| at_edges.neighbour(id, a, b)) {
                 let facets = match beyond {
                     Neighbour::None | Neighbour::Lower => vec![id],
@@ -68,11 +68,9 @@ fn straight_edges(
     ring: &[Point3<f64>],
     beyond: impl Fn(&Point3<f64>, &Point3<f64>) -> Neighbour,
 ) -> Vec<(Segment3, Neighbour)> {
-    let n = ring.len();
-    let sides: Vec<(Segment3, Neighbour)> = (0..n)
-        .map(|i| (&ring[i], &ring[(i + 1) % n]))
-        .filter(|(a, b)| (*b - *a).norm() > 1e-6)
-        .map(|(a, b)| (Segment3::new(*a, *b), beyond(a, b)))
+    let sides: Vec<(Segment3, Neighbour)> = geometry::sides(ring)
+        .filter(|[a, b]| (b - a).norm() > 1e-6)
+        .map(|[a, b]| (Segment3::new(a, b), beyond(&a, &b)))
         .collect();
     let goes_on = |a: &(Segment3, Neighbour), b: &(Segment3, Neighbour)| {
         a.1 == b.1 && a.0.direction().dot(&b.0.direction()) > 1.0 - 1e-6
@@ -103,12 +101,9 @@ impl FacetsAtEdges {
     fn new(facets: &[Facet]) -> Self {
         let mut sides: BTreeMap<PlanEdgeKey, Vec<(FacetId, [f64; 2])>> = BTreeMap::new();
         for (f, facet) in facets.iter().enumerate() {
-            for ring in [&facet.outer].into_iter().chain(&facet.holes) {
-                for (i, a) in ring.iter().enumerate() {
-                    let b = &ring[(i + 1) % ring.len()];
-                    let owner = (FacetId::from_index(f), [a.z, b.z]);
-                    sides.entry(key(a, b)).or_default().push(owner);
-                }
+            for [a, b] in facet.rings().flat_map(|ring| geometry::sides(ring)) {
+                let owner = (FacetId::from_index(f), [a.z, b.z]);
+                sides.entry(key(&a, &b)).or_default().push(owner);
             }
         }
         Self { sides }

@@ -1,14 +1,13 @@
 //! Whether a refined building may replace the old one: it has to close to a solid without a broken
 //! invariant, and the views have to agree inside its facets as well as before.
 
-use nalgebra::Point2;
 use serde::Serialize;
 
 use crate::base::ids::FacetId;
 use crate::base::params::RefineParams;
 use crate::orienting::scene::Scene;
 use crate::planes::photoconsistency::{PlanGrid, consistency_map};
-use crate::roofs::model::{Facet, Violation, check_invariants, inside};
+use crate::roofs::model::{Facet, Violation, check_invariants};
 use crate::roofs::solids::close_buildings;
 
 /// Why a building is not adjusted.
@@ -95,11 +94,11 @@ impl AcceptanceTest<'_> {
         let (model, trace) = close_buildings(new, |_| self.ground_z);
         let mut closed = vec![0.0; new.len()];
         for (facet, &source) in model.facets.iter().zip(&trace.sources) {
-            closed[source] += plan_area(facet);
+            closed[source] += facet.plan().signed_area();
         }
         // A facet that overlaps its neighbour or itself is cut; one that doubles is another one.
         let is_cut = |&i: &usize| {
-            let (area, old) = (plan_area(&new[i]), plan_area(self.old[i]));
+            let [area, old] = [&new[i], self.old[i]].map(|f| f.plan().signed_area());
             (closed[i] - area).abs() > 0.01 || area < 0.5 * old || area > 2.0 * old
         };
         let cut: Vec<usize> = (0..new.len()).filter(is_cut).collect();
@@ -164,7 +163,7 @@ impl AcceptanceTest<'_> {
                 continue;
             }
             let p = grid.center(k % grid.width, k / grid.width);
-            if inside(&facet.outer, &p) && !facet.holes.iter().any(|h| inside(h, &p)) {
+            if facet.covers(&p) {
                 sums[0] += weight;
                 sums[1] += weight * f64::from(map.correlation(k));
             }
@@ -183,19 +182,6 @@ fn facets_of(violation: &Violation) -> Vec<FacetId> {
         Violation::FacetsOverlap { first, second, .. } => vec![*first, *second],
         _ => Vec::new(),
     }
-}
-
-/// Plan area of a facet, m^2.
-fn plan_area(facet: &Facet) -> f64 {
-    let doubled = |ring: &[nalgebra::Point3<f64>]| {
-        let next = ring.iter().cycle().skip(1);
-        let origin = ring.first().map_or(Point2::origin(), |p| p.xy());
-        ring.iter()
-            .zip(next)
-            .map(|(a, b)| (a.xy() - origin).perp(&(b.xy() - origin)))
-            .sum::<f64>()
-    };
-    0.5 * (doubled(&facet.outer) + facet.holes.iter().map(|h| doubled(h)).sum::<f64>())
 }
 
 /// Did any corner move by more than this, metres?

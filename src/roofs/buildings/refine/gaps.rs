@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::edge_observations::{aligned_runs, pixel};
 use super::profiles::{CutBackGain, Extent, SideProfiles};
 use super::wireframe::{SideKind, Wireframe, WireframeState};
-use crate::base::geometry::Segment3;
+use crate::base::geometry::{Segment3, signed_area};
 use crate::base::params::RoofParams;
 use crate::orienting::scene::Scene;
 use crate::roofs::model::{Facet, Occluders, RoofModel, is_simple};
@@ -219,8 +219,9 @@ fn cut_back(
     }
     let moved = corners(lines, &at, n)?;
     let new: Vec<Point2<f64>> = moved.iter().map(|m| m.0).collect();
-    let old: Vec<Point2<f64>> = (0..n).map(at).collect();
-    (is_simple(&new) && area(&new) > LEAST_LEFT * area(&old)).then_some(moved)
+    let old = (0..n).map(at);
+    let is_enough = signed_area(new.iter().copied()) > LEAST_LEFT * signed_area(old);
+    (is_enough && is_simple(&new)).then_some(moved)
 }
 
 /// Sides at less than this sine (15 degrees) go on into each other.
@@ -285,15 +286,6 @@ fn corners(
         }
         return Some(ring);
     }
-}
-
-/// Area of a ring, m^2, positive when it runs counter-clockwise.
-fn area(ring: &[Point2<f64>]) -> f64 {
-    let next = ring.iter().cycle().skip(1);
-    let doubled = ring.iter().zip(next);
-    0.5 * doubled
-        .map(|(a, b)| (a - ring[0]).perp(&(b - ring[0])))
-        .sum::<f64>()
 }
 
 #[cfg(test)]

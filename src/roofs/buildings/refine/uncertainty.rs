@@ -14,6 +14,7 @@ use nalgebra::{DVector, Point2, Vector2, Vector3};
 use super::adjust::{AdjustmentProblem, Solution, Term};
 use super::wireframe::{Wireframe, WireframeState};
 use crate::base::evidence::{Inflation, UncertaintyTable};
+use crate::base::geometry::signed_area;
 use crate::base::math::median;
 use crate::roofs::model::{CornerUncertainty, FacetUncertainty, SideSupport, SideUncertainty};
 
@@ -148,7 +149,8 @@ impl Covariance<'_> {
         let table = self.table;
         // d atan(s) = ds / (1 + s^2).
         let slope_rad = tangent / (1.0 + slope.norm_squared());
-        let pixel_rad = self.pixel_m / plan_area(&corners[..outer.len()]).max(1e-6).sqrt();
+        let area = signed_area(outer.iter().map(|&v| w.position(state, v))).abs();
+        let pixel_rad = self.pixel_m / area.max(1e-6).sqrt();
         FacetUncertainty {
             height_m: table.height.of(self.sigma(&height(&middle)), self.pixel_m),
             slope_deg: table.slope.of(slope_rad, pixel_rad).to_degrees(),
@@ -185,13 +187,6 @@ fn inflation_of(table: &UncertaintyTable, support: SideSupport) -> &Inflation {
         SideSupport::Planes => &table.sides.planes,
         SideSupport::Nothing => &table.sides.nothing,
     }
-}
-
-/// Area of a ring in plan, square metres.
-fn plan_area(ring: &[CornerUncertainty]) -> f64 {
-    let next = ring.iter().cycle().skip(1);
-    let twice = (ring.iter().zip(next)).map(|(a, b)| a.at.x * b.at.y - b.at.x * a.at.y);
-    0.5 * twice.sum::<f64>().abs()
 }
 
 #[cfg(test)]

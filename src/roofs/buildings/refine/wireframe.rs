@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DVector, Point2, Point3, Vector2};
 
-use crate::base::geometry::{Plane, Segment3};
+use crate::base::geometry::{Plane, Segment3, sides};
 use crate::roofs::model::Facet;
 
 /// Heights that differ by less are one, metres: what welding leaves.
@@ -100,8 +100,7 @@ impl Wireframe {
         let faces: Vec<Vec<Vec<usize>>> = facets
             .iter()
             .map(|f| {
-                let rings = [&f.outer].into_iter().chain(&f.holes);
-                rings
+                (f.rings())
                     .map(|ring| ring.iter().map(&mut vertex).collect())
                     .collect()
             })
@@ -169,10 +168,7 @@ impl Wireframe {
 
     /// The ends of all sides of a facet, ring by ring, from corner to corner.
     pub(super) fn ring_sides(&self, face: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
-        self.faces[face].iter().flat_map(|ring| {
-            let next = ring.iter().cycle().skip(1);
-            ring.iter().zip(next).map(|(&u, &v)| [u, v])
-        })
+        self.faces[face].iter().flat_map(|ring| sides(ring))
     }
 
     /// Does a piece of an outline lie on a side?
@@ -316,12 +312,8 @@ impl Wireframe {
     /// For every directed edge the facet on its left.
     fn left_of(&self) -> BTreeMap<(usize, usize), usize> {
         let mut left_of = BTreeMap::new();
-        for (face, rings) in self.faces.iter().enumerate() {
-            for ring in rings {
-                for i in 0..ring.len() {
-                    left_of.insert((ring[i], ring[(i + 1) % ring.len()]), face);
-                }
-            }
+        for face in 0..self.faces.len() {
+            left_of.extend(self.ring_sides(face).map(|[u, v]| ((u, v), face)));
         }
         left_of
     }

@@ -1,7 +1,7 @@
 //! Edges drawn in one photograph.
 
 use super::*;
-use crate::base::geometry::Segment3;
+use crate::base::geometry::{Segment3, contains, sides};
 use crate::orienting::scene::Scene;
 use crate::orienting::synthetic::{SyntheticTruth, hip_scene};
 use nalgebra::{Point2, Vector2};
@@ -230,15 +230,12 @@ fn painted(scene: &Scene, truth: &SyntheticTruth, step: f32) -> Scene {
     for view in &mut plain.views {
         let image = |p: &Point3<f64>| view.camera.project(p).expect("seen");
         for (i, (_, ring)) in truth.facets.iter().enumerate() {
-            let ring: Vec<Point3<f64>> = ring
-                .iter()
-                .map(|p| Point3::new(image(p).x, image(p).y, 0.0))
-                .collect();
+            let ring: Vec<Point2<f64>> = ring.iter().map(image).collect();
             let grey = 0.35 + step * i as f32;
             let width = view.gray.width;
             for (k, value) in view.gray.data.iter_mut().enumerate() {
                 let at = Point2::new((k % width) as f64 + 0.5, (k / width) as f64 + 0.5);
-                if crate::roofs::model::inside(&ring, &at) {
+                if contains(sides(&ring), &at) {
                     *value = grey;
                 }
             }

@@ -8,7 +8,7 @@ mod lists;
 use nalgebra::{Point3, Vector3};
 
 use super::*;
-use crate::base::geometry::mean_point;
+use crate::base::geometry::{mean_point, sides};
 use crate::base::params::Params;
 use crate::orienting::synthetic::gable_scene;
 use crate::roofs::buildings::gable;
@@ -83,7 +83,7 @@ fn assert_is(found: &RoofModel, truth: &RoofModel, within_m: f64) {
     for facet in &truth.facets {
         let middle = mean_point(&facet.outer).xy();
         let own = (found.facets.iter())
-            .find(|f| crate::roofs::model::inside(&f.outer, &middle))
+            .find(|f| f.covers(&middle))
             .expect("a facet at the place");
         for (from, to) in [(facet, own), (own, facet)] {
             for p in &from.outer {
@@ -98,12 +98,11 @@ fn assert_is(found: &RoofModel, truth: &RoofModel, within_m: f64) {
 
 /// Distance of a point from a ring.
 fn distance_m(p: &Point3<f64>, ring: &[Point3<f64>]) -> f64 {
-    let next = ring.iter().cycle().skip(1);
-    let of_side = |(a, b): (&Point3<f64>, &Point3<f64>)| {
+    let of_side = |[a, b]: [Point3<f64>; 2]| {
         let t = (p - a).dot(&(b - a)) / (b - a).norm_squared();
         (a + (b - a) * t.clamp(0.0, 1.0) - p).norm()
     };
-    ring.iter().zip(next).map(of_side).fold(f64::MAX, f64::min)
+    sides(ring).map(of_side).fold(f64::MAX, f64::min)
 }
 
 fn truth() -> RoofModel {

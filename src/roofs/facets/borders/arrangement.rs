@@ -10,6 +10,7 @@ use nalgebra::{Point2, Vector2};
 use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 
 use super::border::Border;
+use crate::base::geometry::{sides, span};
 use crate::base::plan_index::PlanIndex;
 use crate::planes::photoconsistency::PlanGrid;
 
@@ -158,7 +159,7 @@ impl Arrangement {
             }
             for r in r0..=(r1 as usize).min(grid.height - 1) {
                 let y = grid.center(0, r).y;
-                let Some((x0, x1)) = span(&t, y) else {
+                let Some([x0, x1]) = span(sides(&t), y) else {
                     continue;
                 };
                 let column = |x: f64| (x - grid.origin.x) / grid.step - 0.5;
@@ -175,19 +176,6 @@ impl Arrangement {
         }
         out
     }
-}
-
-/// Where the horizontal line at `y` runs inside a triangle.
-fn span(t: &[Point2<f64>; 3], y: f64) -> Option<(f64, f64)> {
-    let mut range: Option<(f64, f64)> = None;
-    for i in 0..3 {
-        let (a, b) = (t[i], t[(i + 1) % 3]);
-        if (a.y <= y) != (b.y <= y) {
-            let x = a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y);
-            range = Some(range.map_or((x, x), |(l, h)| (l.min(x), h.max(x))));
-        }
-    }
-    range
 }
 
 /// Vertices of the arrangement, snapped, and the pieces between them.

@@ -6,7 +6,7 @@ use nalgebra::{Point2, Vector2};
 
 use super::energy::OutlineEnergy;
 use super::rings::{Chain, Rings};
-use crate::base::geometry::bounds;
+use crate::base::geometry::{bounds, crossing, sides};
 use crate::planes::photoconsistency::PlanGrid;
 
 /// Samples are so far apart, metres.
@@ -74,13 +74,9 @@ impl<'a> PlanArea<'a> {
         let mut samples = Vec::new();
         for row in rows.start as usize..rows.end.ceil().max(0.0) as usize {
             let y = grid.center(0, row).y;
-            let sides = rings
-                .iter()
-                .flat_map(|r| r.iter().zip(r.iter().cycle().skip(1)));
-            let crossing = sides.filter(|(a, b)| (a.y > y) != (b.y > y));
-            let mut at: Vec<f64> = crossing
-                .map(|(a, b)| index(a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y), 0))
-                .collect();
+            let crossings =
+                (rings.iter().flat_map(|ring| sides(ring))).filter_map(|side| crossing(side, y));
+            let mut at: Vec<f64> = crossings.map(|x| index(x, 0)).collect();
             at.sort_by(f64::total_cmp);
             for pair in at.chunks_exact(2) {
                 let first = pair[0].ceil().max(0.0) as usize;

@@ -101,7 +101,7 @@ fn make(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::geometry::Plane;
+    use crate::base::geometry::{Plane, signed_area};
     use crate::base::labelling::NO_PLANE;
     use crate::roofs::facets::borders::{Arrangement, Border, BorderKind, LineIndex};
     use crate::roofs::facets::delineation::delineate;
@@ -222,12 +222,7 @@ mod tests {
     }
 
     fn area(ring: &[Point2<f64>]) -> f64 {
-        let next = ring.iter().cycle().skip(1);
-        0.5 * ring
-            .iter()
-            .zip(next)
-            .map(|(a, b)| a.coords.perp(&b.coords))
-            .sum::<f64>()
+        signed_area(ring.iter().copied())
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Point2;
 
+use crate::base::geometry;
 use crate::roofs::facets::delineation::Delineation;
 
 /// A ring of a facet, which lies to the left of it.
@@ -132,9 +133,8 @@ impl Rings {
     /// All sides, with their place.
     fn sides(&self) -> impl Iterator<Item = (Place, [usize; 2])> + '_ {
         self.rings.iter().enumerate().flat_map(|(ring, r)| {
-            let n = r.vertices.len();
-            let side = move |index| [r.vertices[index], r.vertices[(index + 1) % n]];
-            (0..n).map(move |index| (Place { ring, index }, side(index)))
+            let sides = geometry::sides(&r.vertices).enumerate();
+            sides.map(move |(index, side)| (Place { ring, index }, side))
         })
     }
 

@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Vector2};
 
 use super::rings::{Chain, Links, Rings};
-use crate::base::geometry::bounds;
+use crate::base::geometry::{bounds, sides};
 
 /// Sides that meet at less than this sine (15 degrees) have no useful crossing.
 const CROSSING_SINE: f64 = 0.25;
@@ -80,8 +80,7 @@ pub(super) fn meets_others(
     };
     let (first, last) = (gone[0], gone[gone.len() - 1]);
     rings.rings.iter().any(|ring| {
-        let next = ring.vertices.iter().cycle().skip(1);
-        ring.vertices.iter().zip(next).any(|(&a, &b)| {
+        sides(&ring.vertices).any(|[a, b]| {
             let side = [a, b].map(|v| rings.vertices[v]);
             if is_far(&side[0], &side[1]) || goes(a, b) {
                 return false;

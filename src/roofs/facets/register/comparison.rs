@@ -184,10 +184,10 @@ impl RegisterEvidence<'_> {
         let moved = nalgebra::Vector2::from(self.moved.map(|n| n as f64 * self.grid.step));
         let place = |k: usize| self.grid.center(k % self.grid.width, k / self.grid.width);
         let inside: Vec<usize> = (around.iter().copied())
-            .filter(|&k| footprint.contains(&(place(k) - moved)))
+            .filter(|&k| footprint.outline.contains(&(place(k) - moved)))
             .collect();
         let sample_m2 = self.grid.step * self.grid.step;
-        if (inside.len() as f64) * sample_m2 < SHOWN * footprint.area() {
+        if (inside.len() as f64) * sample_m2 < SHOWN * footprint.outline.signed_area() {
             return None;
         }
         let count = |of: &dyn Fn(usize) -> bool| inside.iter().filter(|k| of(**k)).count() as f64;

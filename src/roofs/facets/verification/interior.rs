@@ -8,6 +8,7 @@
 use nalgebra::{Point2, Point3};
 
 use crate::base::evidence::WindowHistogram;
+use crate::base::geometry::Polygon;
 use crate::base::ids::ViewId;
 use crate::orienting::scene::Scene;
 use crate::photographs::raster::mark_inside;
@@ -100,23 +101,16 @@ impl<'m> InteriorWindows<'m> {
 
 /// The middles of the windows that lie wholly inside a facet, as cells of a grid, row by row.
 pub(crate) fn windows_inside(facet: &Facet, grid: &PlanGrid) -> Vec<usize> {
-    let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
-    let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-    let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
-    windows_in(&cells_inside(&rings, grid), grid.width)
+    windows_in(&cells_inside(&facet.plan(), grid), grid.width)
 }
 
 /// Least variance of a difference of correlations: that of their rounding.
 const LEAST_VARIANCE: f64 = 1e-5;
-/// Which cells of a grid, row by row, lie inside the rings.
-fn cells_inside(rings: &[Vec<Point2<f64>>], grid: &PlanGrid) -> Vec<bool> {
-    let pixels = |ring: &Vec<Point2<f64>>| {
-        let pixel = |p: &Point2<f64>| Point2::from((p - grid.origin) / grid.step);
-        ring.iter().map(pixel).collect()
-    };
-    let rings: Vec<Vec<Point2<f64>>> = rings.iter().map(pixels).collect();
+/// Which cells of a grid, row by row, lie inside a polygon.
+fn cells_inside(polygon: &Polygon, grid: &PlanGrid) -> Vec<bool> {
+    let pixels = polygon.mapped(|p| Point2::from((p - grid.origin) / grid.step));
     let mut mask = vec![false; grid.width * grid.height];
-    mark_inside(&rings, grid.width, grid.height, &mut mask);
+    mark_inside(&pixels, grid.width, grid.height, &mut mask);
     mask
 }
 
@@ -144,13 +138,15 @@ mod tests {
 
     /// Number of windows on a grid of 0.2 m.
     fn windows(rings: &[Vec<Point2<f64>>]) -> usize {
+        let rings = rings.to_vec();
+        let polygon = Polygon { rings };
         let grid = PlanGrid {
             origin: Point2::new(2.0, -6.0),
             step: 0.2,
             width: 55,
             height: 20,
         };
-        let mask = cells_inside(rings, &grid);
+        let mask = cells_inside(&polygon, &grid);
         windows_in(&mask, grid.width).len()
     }
 

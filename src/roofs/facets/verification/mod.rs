@@ -141,6 +141,7 @@ pub(crate) fn verify(
 mod tests {
     use super::super::borders::{Border, BorderKind};
     use super::*;
+    use crate::base::geometry::sides;
     use nalgebra::{Point3, Vector3};
 
     /// A plan of 30 m by 30 m, cut by lines across at these x.
@@ -151,7 +152,7 @@ mod tests {
             b: b.into(),
         };
         let corners = [[-10.0, -10.0], [20.0, -10.0], [20.0, 20.0], [-10.0, 20.0]];
-        let frame = (0..4).map(|i| border(corners[i], corners[(i + 1) % 4]));
+        let frame = sides(&corners).map(|[a, b]| border(a, b));
         let cuts = places.iter().map(|&x| border([x, -10.0], [x, 20.0]));
         Arrangement::new(&frame.chain(cuts).collect::<Vec<_>>())
     }

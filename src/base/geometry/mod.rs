@@ -1,4 +1,12 @@
-//! Finite segments, infinite lines and planes. Points and vectors are nalgebra's.
+//! Finite segments, infinite lines, planes, rings and polygons. Points and vectors are nalgebra's.
+
+mod polygon;
+
+pub(crate) use polygon::OverlayRule;
+pub use polygon::{
+    Polygon, clip, contains, convex_hull, crossing, depth, plan_sides, sides, signed_area, span,
+    vector_area,
+};
 
 use nalgebra::{Matrix3, Point, Point2, Point3, Rotation3, SVector, Unit, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
@@ -16,23 +24,6 @@ pub fn bounds<const D: usize>(
 pub fn mean_point<const D: usize>(points: &[Point<f64, D>]) -> Point<f64, D> {
     let sum = points.iter().fold(SVector::zeros(), |s, p| s + p.coords);
     Point::from(sum / points.len() as f64)
-}
-
-/// The part of a ring on the positive side of a linear function (Sutherland and Hodgman). Added
-/// edges lie on the border and cancel under the even-odd rule.
-pub fn clip(ring: &[Point3<f64>], side: impl Fn(&Point3<f64>) -> f64) -> Vec<Point3<f64>> {
-    let mut out = Vec::with_capacity(ring.len() + 2);
-    for (i, p) in ring.iter().enumerate() {
-        let q = &ring[(i + 1) % ring.len()];
-        let (sp, sq) = (side(p), side(q));
-        if sp >= 0.0 {
-            out.push(*p);
-        }
-        if (sp >= 0.0) != (sq >= 0.0) {
-            out.push(p + (q - p) * (sp / (sp - sq)));
-        }
-    }
-    out
 }
 
 /// A finite, directed segment in an image, in pixels (x right, y down, centre of the top-left
