@@ -70,6 +70,7 @@ impl Labelling {
 
     /// Goes on until no single expansion around a change improves: plane by plane, in their order.
     pub(crate) fn minimise(&mut self) {
+        // Every round that goes on lowers the energy; this bounds the time. Assumption.
         const ROUNDS: usize = 8;
         for _ in 0..ROUNDS {
             let start = self.clock.now;

@@ -78,18 +78,16 @@ pub fn check_orientation(views: &[CheckedView]) -> OrientationCheck {
     if before.score >= MIN_AGREEMENT && !has_outliers {
         let matches = subpixel::matches(&check, views, &shifted);
         let shifts = shifts::shifts(&check, &matches, &stated, &coarse).unwrap_or_default();
-        let finding = match subpixel::half_pixel_offset(&check, views, &stated, &matches) {
-            Some((hypothesis, offsets_px)) => CheckFinding::Offset {
-                hypothesis,
-                agreement: before,
-                offsets_px,
-                words: hypothesis.describe(views),
-            },
-            None => CheckFinding::Sound(before),
-        };
+        let offset = subpixel::half_pixel_offset(&check, views, &stated, &matches);
+        let offset = offset.map(|(hypothesis, offsets_px)| CheckFinding::Offset {
+            hypothesis,
+            agreement: before,
+            offsets_px,
+            words: hypothesis.describe(views),
+        });
         return OrientationCheck {
             shifts,
-            ..finding.into()
+            ..offset.unwrap_or(CheckFinding::Sound(before)).into()
         };
     }
     let HypothesisSearch {

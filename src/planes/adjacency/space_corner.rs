@@ -232,6 +232,7 @@ impl<'a> Direction<'a> {
 /// The edges in space of a corner: directions that three views or more agree on, the likeliest
 /// first, each image of an edge once; then clockwise. Two views always agree on a direction.
 pub(super) fn edges(scene: &Scene, at: &Point3<f64>, seen: &[Sighting]) -> Vec<SpaceEdge> {
+    // So many agree on any direction.
     const TWO_VIEWS: usize = 2;
     let mut images: Vec<EdgeImage> = Vec::new();
     for s in seen {

@@ -249,6 +249,7 @@ impl Search {
 
 /// The box in which surfaces are sought: around the lines, which may be wrong in a few places.
 fn extent(lines: &[Line3d]) -> Option<[Point3<f64>; 2]> {
+    // Metres. Assumption: surfaces reach no farther beyond the lines.
     const MARGIN: f64 = 3.0;
     if lines.is_empty() {
         return None;

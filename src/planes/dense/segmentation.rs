@@ -151,6 +151,7 @@ fn agreed(
     start: &Plane,
     z_per_pixel: f64,
 ) -> Plane {
+    // Assumption: so many, spread evenly, say where the plane is.
     const MOST_CELLS: usize = 24;
     let every = cells.len().div_ceil(MOST_CELLS);
     let cells: Vec<usize> = cells.iter().copied().step_by(every).collect();

@@ -242,6 +242,7 @@ fn fill_row(
     heights: &[f32],
     out: &mut [f32],
 ) {
+    // As many as are sampled at once.
     const LANES: usize = 8;
     let m = camera.k * camera.r;
     let from_camera = start - camera.center.xy();

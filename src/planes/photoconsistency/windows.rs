@@ -57,6 +57,7 @@ struct ColumnSums {
     ab: Vec<f32>,
 }
 
+/// Columns of zeros on either side: more than half a window.
 const PADDING: usize = 8;
 
 /// Half of the largest window, without its centre: sums of 15 x 15 products are still exact.

@@ -196,6 +196,7 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[PlanRegion]) -> Optio
 /// Similarity of the views on the ground. Its height is only known to a few decimetres: at every
 /// position the views may agree at the height that it has there or a step beside it.
 fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Sharded<Option<ConsistencyMap>> {
+    // Metres: the few decimetres.
     const STEP: f64 = 0.3;
     let plane = ground.plane();
     let maps = sharded_map("planes", &[-STEP, 0.0, STEP], 0.1..0.2, |_, step| {
@@ -210,6 +211,7 @@ pub(crate) const FINEST_CELL_M: f64 = 0.12;
 
 /// The borders and a frame around the window, so that every cell that matters is closed.
 fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
+    // Metres. Assumption: no cell beside the window matters farther out.
     const MARGIN: f64 = 25.0;
     let (x0, y0) = (grid.origin.x - MARGIN, grid.origin.y - MARGIN);
     let x1 = grid.origin.x + grid.width as f64 * grid.step + MARGIN;

@@ -73,6 +73,25 @@ struct Raster<'a> {
     depth: &'a dyn Fn(f64) -> f64,
 }
 
+/// The views that look under a side at a point of its wall, those whose rays rise least first; with
+/// the horizontal metres of their rays a metre of height.
+fn views_below(scene: &Scene, middle: &Point3<f64>, inward: &Vector3<f64>) -> Vec<(ViewId, f64)> {
+    let tangent = |camera: &Camera| {
+        let ray = camera.center - middle;
+        let shows = camera
+            .project(middle)
+            .is_some_and(|p| camera.contains(&p, 0.0));
+        (shows && ray.z > 0.0).then(|| -ray.dot(inward) / ray.z)
+    };
+    let mut views: Vec<(ViewId, f64)> = (scene.view_ids())
+        .filter_map(|v| Some((v, tangent(scene.camera(v))?)))
+        .filter(|(_, t)| *t > LEAST_TANGENT)
+        .collect();
+    views.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    views.truncate(MAX_VIEWS);
+    views
+}
+
 impl<'a> Strips<'a> {
     /// `None` where fewer than two views look under the side, or it is too short or too low.
     pub(super) fn new(
@@ -91,19 +110,7 @@ impl<'a> Strips<'a> {
         }
         let mut middle = nalgebra::center(&side.start(), &side.end());
         middle.z = 0.5 * (lowest + highest);
-        let tangent = |camera: &Camera| {
-            let ray = camera.center - middle;
-            let shows = camera
-                .project(&middle)
-                .is_some_and(|p| camera.contains(&p, 0.0));
-            (shows && ray.z > 0.0).then(|| -ray.dot(&inward) / ray.z)
-        };
-        let mut views: Vec<(ViewId, f64)> = (scene.view_ids())
-            .filter_map(|v| Some((v, tangent(scene.camera(v))?)))
-            .filter(|(_, t)| *t > LEAST_TANGENT)
-            .collect();
-        views.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        views.truncate(MAX_VIEWS);
+        let views = views_below(scene, &middle, &inward);
         let pixels = views
             .iter()
             .map(|(v, _)| scene.camera(*v).ground_pixel(&middle));

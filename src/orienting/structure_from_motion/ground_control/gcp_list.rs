@@ -97,7 +97,8 @@ impl GroundControl {
             };
             let place = [x, y, z];
             let mark = ((*image).to_owned(), Point2::new(u, v));
-            let known = points.iter_mut().find(|p| match fields.get(6) {
+            let name = fields.get(6);
+            let known = points.iter_mut().find(|p| match name {
                 Some(name) => p.name == **name,
                 None => p.stated == place,
             });
@@ -108,9 +109,7 @@ impl GroundControl {
                 }
                 Some(point) => point.marks.push(mark),
                 None => points.push(ControlPoint {
-                    name: fields
-                        .get(6)
-                        .map_or_else(|| (points.len() + 1).to_string(), |name| (*name).to_owned()),
+                    name: name.map_or_else(|| (points.len() + 1).to_string(), |n| (*n).to_owned()),
                     stated: place,
                     position: Point3::origin(),
                     marks: vec![mark],

@@ -27,7 +27,8 @@ impl ColorImage {
     }
 
     /// From grey values alone.
-    pub fn from_gray(gray: &Gray, smoothing_px: f64) -> Self {
+    #[cfg(test)]
+    pub(super) fn from_gray(gray: &Gray, smoothing_px: f64) -> Self {
         let none = Gray::new(gray.width, gray.height);
         Self::blurred([gray.clone(), none.clone(), none], smoothing_px)
     }

@@ -161,6 +161,7 @@ impl BuildingRefiner<'_> {
     /// The refined facets, or why there are none. Facets that make the result unacceptable keep
     /// their outlines and a small search range, and the others are adjusted again.
     fn refine(&self, report: &mut BuildingRefinement) -> Result<Vec<Facet>, RefineRejection> {
+        // Adjustments, each with fewer facets open. Assumption.
         const ATTEMPTS: usize = 4;
         let (wireframe, _) = Wireframe::new(self.old);
         report.sides = wireframe.sides.len();

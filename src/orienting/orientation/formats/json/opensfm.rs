@@ -122,15 +122,13 @@ pub(crate) fn read_shots(
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Orientation>> {
     let shots: OdmShots = parse(path, text)?;
-    let of_file = match cameras {
-        Some((path, text)) => Some((path, parse::<BTreeMap<String, Value>>(path, text)?)),
-        None => {
-            warnings.push(format!(
-                "{path}: there is no cameras.json: the principal point is taken to be in the middle, and the lens free of distortion"
-            ));
-            None
-        }
-    };
+    let read = |(path, text)| Ok::<_, Error>((path, parse::<BTreeMap<String, Value>>(path, text)?));
+    let of_file = cameras.map(read).transpose()?;
+    if of_file.is_none() {
+        warnings.push(format!(
+            "{path}: there is no cameras.json: the principal point is taken to be in the middle, and the lens free of distortion"
+        ));
+    }
     let (mut found, mut left_out, mut guessed) = (Vec::new(), LeftOut::default(), BTreeMap::new());
     for OdmShot { properties: shot } in shots.features {
         let read = match &of_file {

@@ -55,13 +55,9 @@ pub(crate) fn read(
             exterior.0
         ));
     }
-    let comments = || {
-        let comments = camera.1.lines().filter_map(|l| l.trim().strip_prefix('#'));
-        comments.collect::<Vec<_>>().join("\n")
-    };
     let stated = unit::stated_unit(&list.words)
         .or(list.is_of_degrees.then_some(AngleUnit::Degrees))
-        .or_else(|| unit::stated_unit(&comments()));
+        .or_else(|| unit::stated_unit(&comments(camera.1)));
     if list.kind == AngleKind::YawPitchRoll {
         let unit = stated.unwrap_or(AngleUnit::Degrees).radians();
         warnings.push(format!(
@@ -94,6 +90,11 @@ pub(crate) fn read(
         ..pose.orientation(&frame, unit.radians())
     };
     Ok(poses.iter().map(of_pose).collect())
+}
+
+fn comments(text: &str) -> String {
+    let comments = text.lines().filter_map(|l| l.trim().strip_prefix('#'));
+    comments.collect::<Vec<_>>().join("\n")
 }
 
 impl ListedPose {

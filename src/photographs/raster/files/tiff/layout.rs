@@ -94,11 +94,10 @@ impl Layout {
         let number = |tag: u16, default: u64| directory.number(tag).unwrap_or(default);
         let (width, height) =
             stated_size(directory).ok_or_else(|| missing("its width and height"))?;
-        let compression = Compression::new(number(tags::COMPRESSION, 1)).map_err(|name| {
-            unread(format!(
-                "its compression is {name}, which is not read in a TIFF"
-            ))
-        })?;
+        let not_read =
+            |name: String| format!("its compression is {name}, which is not read in a TIFF");
+        let compression = Compression::new(number(tags::COMPRESSION, 1))
+            .map_err(|name| unread(not_read(name)))?;
         let bits = bits(directory).map_err(unread)?;
         let photometric = directory.number(tags::PHOTOMETRIC);
         let photometric = photometric.ok_or_else(|| missing("what its samples mean"))?;
@@ -112,14 +111,7 @@ impl Layout {
         if samples < needed || samples > usize::from(u16::MAX) {
             return Err(missing("as many bands as its colours need"));
         }
-        if number(tags::FILL_ORDER, 1) != 1 {
-            return Err(unread(
-                "the bits of its bytes are in reverse order".to_owned(),
-            ));
-        }
-        if is_jpeg && bits != 8 {
-            return Err(unread(format!("it is compressed as JPEG of {bits} bits")));
-        }
+        check_bits(directory, is_jpeg, bits).map_err(unread)?;
         let predicted = is_predicted(directory, &compression).map_err(unread)?;
         let (used, bands) = used_bands(directory, &colours, needed, samples);
         let is_planar = number(tags::PLANAR_CONFIGURATION, 1) == 2 && samples > 1;
@@ -246,6 +238,16 @@ fn stated_size(directory: &Directory) -> Option<(u32, u32)> {
     let extent = |tag: u16| directory.number(tag).and_then(|v| u32::try_from(v).ok());
     let size = extent(tags::IMAGE_WIDTH).zip(extent(tags::IMAGE_LENGTH));
     size.filter(|&(w, h)| w > 0 && h > 0)
+}
+
+fn check_bits(directory: &Directory, is_jpeg: bool, bits: u8) -> std::result::Result<(), String> {
+    if directory.number(tags::FILL_ORDER).unwrap_or(1) != 1 {
+        return Err("the bits of its bytes are in reverse order".to_owned());
+    }
+    if is_jpeg && bits != 8 {
+        return Err(format!("it is compressed as JPEG of {bits} bits"));
+    }
+    Ok(())
 }
 
 /// Are samples stored as differences to the one before?
