@@ -17,6 +17,7 @@ const FLOORS: [(&str, &[&str]); 12] = [
         &[
             "math",
             "geometry",
+            "line_linker",
             "ids",
             "plan_index",
             "execution",

@@ -52,6 +52,11 @@ impl Segment2 {
         Self { p0, p1 }
     }
 
+    /// Both ends.
+    pub fn ends(&self) -> [Point2<f64>; 2] {
+        [self.p0, self.p1]
+    }
+
     /// Length in pixels.
     pub fn length(&self) -> f64 {
         (self.p1 - self.p0).norm()
@@ -117,6 +122,11 @@ impl Segment3 {
         Self { p0, p1 }
     }
 
+    /// Both ends.
+    pub fn ends(&self) -> [Point3<f64>; 2] {
+        [self.p0, self.p1]
+    }
+
     /// Length in metres.
     pub fn length(&self) -> f64 {
         (self.p1 - self.p0).norm()
@@ -138,18 +148,6 @@ impl Segment3 {
     pub fn stretch(&self, from_m: f64, to_m: f64) -> Self {
         let d = self.direction();
         Self::new(self.p0 + d * from_m, self.p0 + d * to_m)
-    }
-
-    /// Start and end of another segment's projection onto this one, metres from its start.
-    pub fn span_of(&self, other: &Self) -> [f64; 2] {
-        let [t0, t1] = [other.p0, other.p1].map(|p| (p - self.p0).dot(&self.direction()));
-        [t0.min(t1), t0.max(t1)]
-    }
-
-    /// Does this segment cover at least a share of another's length?
-    pub fn covers(&self, other: &Self, share: f64) -> bool {
-        let [from, to] = self.span_of(other);
-        to.min(self.length()) - from.max(0.0) >= share * other.length()
     }
 
     /// Distance in metres from `point` to the infinite line through the segment.

@@ -5,6 +5,7 @@
 //! math          elementary functions with the same bits on every target
 //! ids           newtypes of views, segments, lines, facets
 //! geometry      points, segments, planes
+//! line_linker   are two lines the same one
 //! plan_index    boxes in plan
 //! json          parameters and options from JSON
 //! execution     parallel maps, shards, progress
@@ -23,6 +24,7 @@ pub mod geometry;
 pub mod ids;
 pub(crate) mod json;
 pub(crate) mod labelling;
+pub(crate) mod line_linker;
 pub(crate) mod math;
 pub mod params;
 pub(crate) mod plan_index;
