@@ -18,7 +18,7 @@ impl StageDefinition for Coplanar {
     const NAME: &'static str = "coplanar";
     const TITLE: &'static str = "Coplanar sets";
     const SECTION: &'static str = "B99 2, 5";
-    const READS: &'static [&'static str] = &["coplanar", "lines3d", "roof.border_nats_per_m"];
+    const READS: &'static [&'static str] = &["coplanar", "roof.border_nats_per_m"];
     const NEEDS: &'static [Stage] = &[Stage::Segments, Stage::Lines];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
@@ -27,7 +27,7 @@ impl StageDefinition for Coplanar {
         }
         let segments = &required(&before.segments).value;
         let lines = &required(&before.lines).value;
-        Ok(coplanar_sets(scene, lines, segments, &params.lines3d, &params.roof).into())
+        Ok(coplanar_sets(scene, lines, segments, &params.roof).into())
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {

@@ -122,9 +122,6 @@ export interface CoplanarSetParts {
   lines: number;
   /** Sides without a line that were made square or mirrored. */
   moved: number;
-  /** Reprojection error of the wireframe before and after its adjustment, px. */
-  before: number;
-  after: number;
   /** The facets that it proposed. */
   facets: number[];
 }
@@ -138,12 +135,9 @@ export function coplanarSetParts(
   if (set === undefined || trace === undefined) {
     return null;
   }
-  const [before, after] = trace.reprojection_px;
   return {
     lines: set.lines.length,
     moved: trace.closing.length,
-    before,
-    after,
     facets: (facets ?? []).flatMap((facet, i) => (coplanarSetsOf(facet).includes(index) ? [i] : [])),
   };
 }

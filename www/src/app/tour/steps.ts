@@ -262,7 +262,7 @@ export const STEPS: readonly TourStep[] = [
       const found = pickedSet();
       return found === null
         ? ""
-        : `${counted(found.lines, "lines")} lie in one plane. Its corners moved until the image edges were off by ${found.after.toFixed(2)} px instead of ${found.before.toFixed(2)} px (RMS).`;
+        : `${counted(found.lines, "lines")} lie in one plane. ${counted(found.moved, "sides")} without a line close their polygon, by right angles or symmetry.`;
     },
     hint: () => {
       const found = pickedSet();
