@@ -115,7 +115,7 @@ impl Session {
 
     /// How the terrain model that is known compares with the images; `null` without one, and before
     /// the half-planes.
-    #[wasm_bindgen(unchecked_return_type = "TerrainComparison | null")]
+    #[wasm_bindgen(unchecked_return_type = "KnownComparison | null")]
     pub fn terrain(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().half_planes.as_ref();
         to_js(&found.and_then(|h| h.ground.terrain()))

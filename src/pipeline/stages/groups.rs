@@ -71,13 +71,13 @@ impl StageDefinition for Groups {
         let of_cloud = of_cloud.map(|(i, plane)| plane.proposed(i));
         let others = rectangles.into_iter().chain(coplanar).chain(corners);
         let proposals: Vec<ProposedPlane> = others.chain(dense).chain(of_cloud).collect();
-        let placed = |compared: &CloudComparison| {
+        let placed = |cloud: &CloudComparison| {
             // Only the instance that weighs the planes has the points.
             let known = scene.known.point_cloud.as_ref()?;
             Some(PlacedCloud {
-                points: compared.placed(known),
-                accuracy_m: compared.accuracy_m,
-                belongs: compared.belongs,
+                points: cloud.placed(known),
+                accuracy_m: cloud.compared.accuracy_m,
+                belongs: cloud.compared.belongs,
                 params: params.point_cloud.clone(),
             })
         };

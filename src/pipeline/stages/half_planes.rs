@@ -5,9 +5,10 @@ use super::{from_bytes, is_any, required, to_bytes, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::ids::LineId;
 use crate::base::params::Params;
+use crate::orienting::known::KnownThing;
 use crate::orienting::scene::Scene;
 use crate::planes::half_planes::{HalfPlane, SweepTrace, sweep_half_planes};
-use crate::planes::terrain::{Ground, TerrainComparison};
+use crate::planes::terrain::Ground;
 
 /// Half-planes, and the ground above which they were sought.
 #[derive(Clone, Debug)]
@@ -69,7 +70,7 @@ impl StageDefinition for HalfPlanes {
                 found
                     .ground
                     .terrain()
-                    .and_then(TerrainComparison::warning)
+                    .and_then(|terrain| terrain.warning(KnownThing::Terrain))
                     .into_iter()
                     .collect(),
             ]

@@ -16,6 +16,7 @@ import type {
   FacetTrace,
   GroupingTrace,
   HalfPlane,
+  KnownComparison,
   LineRecord,
   MatchRecord,
   RectangleTrace,
@@ -25,7 +26,6 @@ import type {
   SegmentMatching,
   SideRecord,
   SideTrace,
-  TerrainComparison,
 } from "./records";
 import type { Selection } from "./selection";
 
@@ -36,7 +36,7 @@ export interface Results {
   lines: Float64Array | null;
   halfPlanes: HalfPlane[] | null;
   /** How the terrain model that is known beforehand compares with the images. */
-  terrain: TerrainComparison | null;
+  terrain: KnownComparison | null;
   coplanar: CoplanarSets | null;
   adjacency: AdjacencyGraphs | null;
   dense: DensePlanes | null;

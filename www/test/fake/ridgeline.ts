@@ -20,6 +20,7 @@ import type {
   GroundPicture,
   GroupingTrace,
   HalfPlane,
+  KnownComparison,
   LackingFile,
   LineRecord,
   MatchRecord,
@@ -30,7 +31,6 @@ import type {
   SideRecord,
   SideTrace,
   StageSummary,
-  TerrainComparison,
   TileReport,
 } from "../../src/shared/records";
 import type { CoreSession } from "../../src/worker/coreSession";
@@ -249,7 +249,7 @@ export class Session implements CoreSession {
     return HALF_PLANES;
   }
 
-  terrain(): TerrainComparison | null {
+  terrain(): KnownComparison | null {
     return null;
   }
 
