@@ -31,7 +31,8 @@ pub(crate) struct LineLinker {
     pub share: f64,
 }
 
-/// Sine of 10 degrees.
+/// Sines of 3 and of 10 degrees.
+const SINE_3: f64 = 0.052_335_956_242_943_83;
 const SINE_10: f64 = 0.173_648_177_666_930_35;
 
 /// A line that is shorter is a point, which has no direction.
@@ -150,6 +151,28 @@ impl LineLinker {
             sine: 0.12,
             apart: 0.25,
             beyond: 0.25,
+            ..Self::ANY
+        }
+    }
+
+    /// An edge of the model along a line, metres: farther than two pixels and a half from it an edge
+    /// is another one.
+    pub(crate) const fn explained_edge(pixel_m: f64) -> Self {
+        Self {
+            sine: SINE_3,
+            apart: 2.5 * pixel_m,
+            beyond: 2.5 * pixel_m,
+            ..Self::ANY
+        }
+    }
+
+    /// An image line of a cluster along the image of a matched line, px; a short one's direction is
+    /// as uncertain as its ends.
+    pub(crate) const fn explained_image_line(sine: f64, gate_px: f64) -> Self {
+        Self {
+            sine,
+            apart: gate_px,
+            beyond: gate_px,
             ..Self::ANY
         }
     }
