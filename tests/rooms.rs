@@ -19,6 +19,7 @@ const FLOORS: [(&str, &[&str]); 12] = [
             "math",
             "least_squares",
             "geometry",
+            "line_linker",
             "ids",
             "plan_index",
             "execution",

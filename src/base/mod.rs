@@ -6,6 +6,7 @@
 //! least_squares sums of squared residuals, robust, and the steps that minimise them
 //! ids           newtypes of views, segments, lines, facets
 //! geometry      points, segments, planes, polygons
+//! line_linker   are two lines the same one
 //! plan_index    boxes in plan
 //! json          parameters and options from JSON
 //! execution     parallel maps, shards, progress
@@ -25,6 +26,7 @@ pub mod ids;
 pub(crate) mod json;
 pub(crate) mod labelling;
 pub(crate) mod least_squares;
+pub(crate) mod line_linker;
 pub(crate) mod math;
 pub mod params;
 pub(crate) mod plan_index;

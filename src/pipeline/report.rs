@@ -7,9 +7,9 @@ use serde::Serialize;
 use super::stages::Stage;
 use super::summary::StageSummary;
 use crate::base::params::Params;
+use crate::orienting::known::KnownComparison;
 use crate::orienting::scene::{Scene, ViewAdjustment, ViewShift};
 use crate::planes::dense::CloudComparison;
-use crate::planes::terrain::TerrainComparison;
 use crate::roofs::facets::RegisterTrace;
 
 /// The content of `report.json`.
@@ -36,7 +36,7 @@ struct Report<'a> {
 #[derive(Clone, Copy, Default, Serialize)]
 pub(crate) struct KnownReport<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub terrain: Option<&'a TerrainComparison>,
+    pub terrain: Option<&'a KnownComparison>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub footprints: Option<&'a RegisterTrace>,
     #[serde(skip_serializing_if = "Option::is_none")]

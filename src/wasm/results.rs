@@ -115,7 +115,7 @@ impl Session {
 
     /// How the terrain model that is known compares with the images; `null` without one, and before
     /// the ground.
-    #[wasm_bindgen(unchecked_return_type = "TerrainComparison | null")]
+    #[wasm_bindgen(unchecked_return_type = "KnownComparison | null")]
     pub fn terrain(&self) -> Result<JsValue, JsValue> {
         let ground = self.loaded()?.results().ground.as_ref();
         to_js(&ground.and_then(|ground| ground.terrain()))

@@ -5,14 +5,15 @@
 use nalgebra::{Point2, Point3, Vector3};
 use ridgeline::base::geometry::{contains, plan_sides};
 use ridgeline::base::params::Params;
-use ridgeline::orienting::known::{Register, Terrain, WorldSystem};
+use ridgeline::orienting::known::{
+    KnownComparison, KnownThing, KnownVerdict, Register, Terrain, WorldSystem,
+};
 use ridgeline::orienting::orientation::InputFile;
 use ridgeline::orienting::scene::Scene;
 use ridgeline::orienting::scene_loader::{LoadOptions, load_scene};
 use ridgeline::orienting::synthetic::{SyntheticTruth, gable_scene, slope_scene, to_files};
 use ridgeline::pipeline::{Run, Stage};
-use ridgeline::planes::terrain::{TerrainComparison, TerrainVerdict};
-use ridgeline::roofs::facets::{FootprintVerdict, RegisterTrace, RegisterVerdict};
+use ridgeline::roofs::facets::{FootprintVerdict, RegisterTrace};
 
 const SIZE_PX: u32 = 400;
 /// Tangent of 15 degrees.
@@ -77,7 +78,7 @@ fn house_is(run: &Run, height: impl Fn(f64, f64) -> f64) {
     assert!((base - lowest).abs() < 0.6, "{base} instead of {lowest}");
 }
 
-fn comparison(run: &Run) -> &TerrainComparison {
+fn comparison(run: &Run) -> &KnownComparison {
     let ground = run.results().ground.as_ref().unwrap();
     ground.terrain().unwrap()
 }
@@ -91,7 +92,7 @@ fn a_house_on_a_slope_of_15_degrees_is_found_with_and_without_a_terrain_model() 
     house_is(&alone, height);
 
     let known = run(loaded(&scene, Some(("dtm.asc", grid(height)))));
-    assert_eq!(comparison(&known).verdict, TerrainVerdict::Confirmed);
+    assert_eq!(comparison(&known).verdict, KnownVerdict::Used);
     ground_is(&known, height, 0.15);
     house_is(&known, height);
 
@@ -99,14 +100,12 @@ fn a_house_on_a_slope_of_15_degrees_is_found_with_and_without_a_terrain_model() 
     let other_datum = grid(|x, y| height(x, y) + 47.3);
     let moved = run(loaded(&scene, Some(("dtm.asc", other_datum))));
     let found = comparison(&moved);
-    assert_eq!(found.verdict, TerrainVerdict::Moved);
-    assert!(
-        (found.images_above_m.unwrap() + 47.3).abs() < 0.3,
-        "{found:?}"
-    );
+    assert_eq!(found.verdict, KnownVerdict::Moved);
+    assert!((found.shift_m.unwrap()[2] + 47.3).abs() < 0.3, "{found:?}");
     ground_is(&moved, height, 0.4);
     house_is(&moved, height);
-    assert!(found.warning().unwrap().contains("another datum"));
+    let warning = found.warning(KnownThing::Terrain).unwrap();
+    assert!(warning.contains("another datum"));
 }
 
 #[test]
@@ -119,7 +118,7 @@ fn a_surface_model_is_no_terrain() {
         inside.map_or(truth.ground_z, |(plane, _)| plane.z_at(x, y))
     };
     let found = run(loaded(&scene, Some(("dsm.asc", grid(surface)))));
-    assert_eq!(comparison(&found).verdict, TerrainVerdict::Surface);
+    assert_eq!(comparison(&found).verdict, KnownVerdict::Contradicted);
     house_is(&found, |_, _| truth.ground_z);
 }
 
@@ -200,17 +199,13 @@ fn right_moved_and_wrong_footprints_are_named_and_leave_the_house() {
     };
     let right = with(&[("h1", [0.0, 0.0])]);
     let found = register(&right);
-    assert!(found.belongs > 0.95, "{found:?}");
-    assert_eq!(
-        found.verdict == RegisterVerdict::Used,
-        found.moved_m == [0.0; 2]
-    );
+    assert!(found.compared.belongs > 0.95, "{found:?}");
     assert_eq!(found.footprints[0].verdict, FootprintVerdict::Agrees);
     assert!(found.footprints[0].roofed > 0.9);
 
     let moved = with(&[("h1", [1.2, -0.9])]);
     let found = register(&moved);
-    assert!(found.belongs > 0.95, "{found:?}");
+    assert!(found.compared.belongs > 0.95, "{found:?}");
     assert_eq!(found.footprints[0].verdict, FootprintVerdict::Shifted);
     let [x, y] = found.footprints[0].shift_m.unwrap();
     assert!((x + 1.2).abs() < 0.5 && (y - 0.9).abs() < 0.5, "{found:?}");

@@ -8,13 +8,13 @@ use crate::common::clouds::{is_inside, las, plan, points};
 use nalgebra::{Point2, Point3, Vector2};
 use ridgeline::base::ids::ProposalOrigin;
 use ridgeline::base::params::Params;
-use ridgeline::orienting::known::PointCloud;
+use ridgeline::orienting::known::{KnownThing, KnownVerdict, PointCloud};
 use ridgeline::orienting::orientation::InputFile;
 use ridgeline::orienting::scene::Scene;
 use ridgeline::orienting::scene_loader::{LoadOptions, load_scene};
 use ridgeline::orienting::synthetic::{SyntheticTruth, gable_scene, to_files};
 use ridgeline::pipeline::{Run, Stage};
-use ridgeline::planes::dense::{CloudComparison, CloudVerdict};
+use ridgeline::planes::dense::CloudComparison;
 
 const SIZE_PX: u32 = 400;
 
@@ -145,17 +145,23 @@ fn a_moved_cloud_is_named_and_moved_back() {
     let (scene, truth) = gable_scene(SIZE_PX);
     let points = points(&truth);
     let right = run(&scene, cloud(&points, [0.0; 3]));
-    assert_eq!(comparison(&right).verdict, CloudVerdict::Used);
-    assert!(comparison(&right).belongs > 0.95);
+    assert_eq!(comparison(&right).compared.verdict, KnownVerdict::Used);
+    assert!(comparison(&right).compared.belongs > 0.95);
     for by in [[0.8, 0.6, 0.0], [0.0, 0.0, 46.2], [-1.2, 0.5, -31.0]] {
         let moved = run(&scene, cloud(&points, by));
         let found = comparison(&moved);
-        assert_eq!(found.verdict, CloudVerdict::Moved, "{found:?}");
+        assert_eq!(found.compared.verdict, KnownVerdict::Moved, "{found:?}");
         // Along the ridge only the verges tell.
-        for ((moved, by), within) in found.moved_m.iter().zip(by).zip([0.4, 0.4, 0.1]) {
+        for ((moved, by), within) in found.compared.moved_m().iter().zip(by).zip([0.4, 0.4, 0.1]) {
             assert!((moved + by).abs() < within, "{found:?}");
         }
-        assert!(found.warning().unwrap().contains("was moved by"));
+        assert!(
+            found
+                .compared
+                .warning(KnownThing::PointCloud)
+                .unwrap()
+                .contains("was moved by")
+        );
         for facet in [0, 1] {
             assert!(self::found(&moved, &truth, facet) > 0.9);
         }
@@ -171,8 +177,18 @@ fn a_cloud_of_another_place_is_left_out_and_changes_nothing() {
     let foreign: Vec<Point3<f64>> = points(&truth).iter().map(elsewhere).collect();
     let with = run(&scene, cloud(&foreign, [0.0; 3]));
     let found = comparison(&with);
-    assert_eq!(found.verdict, CloudVerdict::LeftOut, "{found:?}");
-    assert!(found.warning().unwrap().contains("contradict"));
+    assert_eq!(
+        found.compared.verdict,
+        KnownVerdict::Contradicted,
+        "{found:?}"
+    );
+    assert!(
+        found
+            .compared
+            .warning(KnownThing::PointCloud)
+            .unwrap()
+            .contains("contradict")
+    );
     let models = [&without, &with].map(|run| run.results().roof_model().unwrap());
     assert_eq!(models[0], models[1]);
 }
@@ -184,7 +200,7 @@ fn clouds_of_few_points_do_nothing() {
     for few in [0, 1, 20] {
         let some: Vec<Point3<f64>> = points(&truth).into_iter().take(few).collect();
         let with = run(&scene, cloud(&some, [0.0; 3]));
-        assert_eq!(comparison(&with).verdict, CloudVerdict::Elsewhere);
+        assert_eq!(comparison(&with).compared.verdict, KnownVerdict::Elsewhere);
         let models = [&without, &with].map(|run| run.results().roof_model().unwrap());
         assert_eq!(models[0], models[1]);
     }
@@ -336,7 +352,7 @@ fn shares_of_all_and_nothing_and_no_error_at_all_give_numbers() {
     scene.known.point_cloud = Some(Arc::new(exact));
     let mut run = Run::new(scene, params);
     run.step(Stage::Facets, &ridgeline::silent());
-    assert!((0.0..=1.0).contains(&comparison(&run).belongs));
+    assert!((0.0..=1.0).contains(&comparison(&run).compared.belongs));
     let model = run.results().roof_model().unwrap();
     let is_number = |f: &ridgeline::roofs::model::Facet| f.probability.is_finite();
     assert!(model.facets.iter().all(is_number));

@@ -11,16 +11,8 @@
 use super::nview::{CompletedLine, IsTaken, MatchContext, complete_line};
 use super::segment_geometry::SegmentRef;
 use super::selection::{BundleOutcome, Selection};
-use crate::lines::lines2d::GuidedEdge;
-use crate::lines::lines3d::{ProjectedLine, ReprojectionGate};
-
-/// Largest standard deviation of a line's image at the edge of another that is compared with it,
-/// px.
-const MAX_SIGMA_PX: f64 = 2.0;
-/// Cosine of the largest angle between two lines that are compared, 10 degrees.
-const PARALLEL: f64 = 0.984_807_753_012_208;
-/// Least share of either line's length that the joined one covers.
-const COVERED: f64 = 0.9;
+use crate::base::line_linker::LineLinker;
+use crate::lines::lines3d::reprojects_onto;
 
 /// Joins the lines that are images of one edge.
 pub(super) fn join_lines(context: &MatchContext, selection: &mut Selection) {
@@ -73,7 +65,12 @@ fn join(
 /// Do the views and the stretch of another line include those of this one?
 fn is_duplicate_of(line: &CompletedLine, other: &CompletedLine) -> bool {
     let supports = |view| other.supports.iter().any(|s| s.view == view);
-    line.supports.iter().all(|s| supports(s.view)) && other.segment.covers(&line.segment, COVERED)
+    line.supports.iter().all(|s| supports(s.view)) && contains(other, line)
+}
+
+/// Does a line run along nearly all of another?
+fn contains(line: &CompletedLine, part: &CompletedLine) -> bool {
+    LineLinker::contained().connects(&line.segment.ends(), &part.segment.ends())
 }
 
 /// Does the line completed from the segments of two include both?
@@ -81,7 +78,7 @@ fn is_both(context: &MatchContext, line: &CompletedLine, parts: [&CompletedLine;
     parts.iter().all(|part| {
         line.supports.len() >= part.supports.len()
             && reprojects(context, line, part)
-            && line.segment.covers(&part.segment, COVERED)
+            && contains(line, part)
     })
 }
 
@@ -99,28 +96,17 @@ fn near(context: &MatchContext, a: &CompletedLine, b: &CompletedLine) -> bool {
         .scene
         .camera(a.supports[0].view)
         .ground_pixel(&a.segment.p0);
-    let [from, to] = a.segment.span_of(&b.segment);
-    let gap_m = (from - a.segment.length()).max(-to);
-    gap_m <= context.params.max_gap_px * pixel_m
-        && a.segment.direction().dot(&b.segment.direction()).abs() >= PARALLEL
+    let linker = LineLinker::fragments(context.params.max_gap_px * pixel_m);
+    linker.connects(&a.segment.ends(), &b.segment.ends())
 }
 
 /// Does the image of a line lie on the edges of another, in two of three views that show one?
 fn reprojects(context: &MatchContext, line: &CompletedLine, onto: &CompletedLine) -> bool {
     let length = line.fit.line.length();
     let covariance_at = |t: f64| line.fit.covariance_at(t / length);
-    let gate = ReprojectionGate {
-        width_px: context.params.gate_px,
-        max_sigma_px: MAX_SIGMA_PX,
-    };
-    let lies_on = |edge: &GuidedEdge| {
-        let image = ProjectedLine::new(context.scene.camera(edge.view), &line.fit.line);
-        image.is_some_and(|image| image.contains(&edge.segment, gate, covariance_at))
-    };
-    let edges: Vec<bool> = (onto.supports.iter().filter_map(|s| s.edge.as_ref()))
-        .map(lies_on)
-        .collect();
-    3 * edges.iter().filter(|on| **on).count() >= 2 * edges.len()
+    let linker = LineLinker::reprojected_fragment(context.params.gate_px);
+    let of_line = (&line.fit.line, covariance_at);
+    reprojects_onto(context.scene, of_line, &onto.supports, &linker)
 }
 
 impl Selection {
@@ -150,11 +136,15 @@ mod tests {
     use crate::base::geometry::{Segment2, Segment3};
     use crate::base::ids::SegmentId;
     use crate::base::ids::ViewId;
-    use crate::lines::lines2d::SegmentKind;
+    use crate::lines::lines2d::{GuidedEdge, SegmentKind};
     use crate::lines::lines3d::planted;
     use crate::lines::lines3d::{LineSupport, SupportKind};
     use crate::lines::lines3d::{Observation, fit_line};
     use nalgebra::Matrix2;
+
+    fn covers(line: &Segment3, part: &Segment3) -> bool {
+        LineLinker::contained().connects(&line.ends(), &part.ends())
+    }
 
     impl PlantedRoof {
         /// The line through a part of an edge from some views, with the edge displaced in one of
@@ -229,7 +219,7 @@ mod tests {
         for (a, b) in [(&outward, &back), (&first, &second), (&second, &first)] {
             let line = roof.joined(a, b).expect("one line");
             assert_eq!(line.supports.len(), 5);
-            assert!(line.segment.covers(&whole, COVERED), "{:?}", line.segment);
+            assert!(covers(&line.segment, &whole), "{:?}", line.segment);
             assert!(whole.line_distance(&line.segment.at(0.5)) < 0.05);
         }
         let far = roof.line(2, [0.8, 1.0], &ALL, NOWHERE);
@@ -277,7 +267,7 @@ mod tests {
         for other in [fewer, shorter] {
             assert!(!is_duplicate_of(&part, &other));
             let joined = roof.joined(&part, &other).expect("one line");
-            assert!(joined.segment.covers(&part.segment, COVERED));
+            assert!(contains(&joined, &part));
         }
     }
 
@@ -305,7 +295,7 @@ mod tests {
         assert_eq!(selection.outcomes[4], BundleOutcome::Superseded(0));
         let edges = planted::edges();
         for (line, edge) in selection.lines.iter().zip([2, 0, 1]) {
-            assert!(line.segment.covers(&edges[edge], COVERED), "edge {edge}");
+            assert!(covers(&line.segment, &edges[edge]), "edge {edge}");
         }
     }
 }

@@ -19,6 +19,7 @@ use super::segment_geometry::{PreparedSegments, SegmentGeometry, SegmentRef};
 use crate::base::execution::{Sharded, sharded_map};
 use crate::base::geometry::Segment2;
 use crate::base::ids::ViewId;
+use crate::base::line_linker::LineLinker;
 use crate::lines::lines3d::ProjectedLine;
 use crate::orienting::scene::Scene;
 
@@ -168,10 +169,10 @@ impl TransferredLine {
         if (to - from) * px < 0.5 * (scope.params.window_px as f64).min(geometry.length_px) {
             return false;
         }
-        let gate = (reach * reach + 9.0 * geometry.sigma_px * geometry.sigma_px).sqrt();
+        let linker = LineLinker::predicted_image(reach).known_to(geometry.sigma_px);
         [from, to].iter().all(|t| {
             let p = geometry.segment.at((t - t0) / (t1 - t0));
-            self.image.distance(&p).abs() <= gate
+            linker.distance(self.image.distance(&p)) >= 0.0
         })
     }
 }

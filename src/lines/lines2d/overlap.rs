@@ -5,6 +5,7 @@ use nalgebra::{Point2, Vector2};
 use super::segment::ImageSegment;
 use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
 use crate::base::geometry::Segment2;
+use crate::base::line_linker::LineLinker;
 
 /// Adds the candidates that no segment runs along; the others are recorded as rejected.
 pub(super) fn add_without_overlap(
@@ -39,8 +40,9 @@ fn is_apart(
     let near =
         |b: &Bounds| b[1].x >= low.x && b[0].x <= high.x && b[1].y >= low.y && b[0].y <= high.y;
     let edges = edges.iter().zip(boxes).filter(|(_, b)| near(b));
-    let shared = |edge: &ImageSegment| shared_length(&candidate.segment, &edge.segment, clear_px);
-    edges.map(|(edge, _)| shared(edge)).sum::<f64>() <= 0.5 * candidate.segment.length()
+    let (linker, own) = (LineLinker::blurred_edge(clear_px), candidate.segment.ends());
+    let shared = edges.filter_map(|(edge, _)| linker.shared(&own, &edge.segment.ends()));
+    shared.map(|[from, to]| to - from).sum::<f64>() <= 0.5 * candidate.segment.length()
 }
 
 /// Least and largest coordinates, px.
@@ -48,21 +50,4 @@ type Bounds = [Point2<f64>; 2];
 
 fn bounds(segment: &Segment2) -> Bounds {
     [segment.p0.inf(&segment.p1), segment.p0.sup(&segment.p1)]
-}
-
-/// Length of `a` along which `b` stays within a distance of it, taken at the ends of the overlap.
-fn shared_length(a: &Segment2, b: &Segment2, distance_px: f64) -> f64 {
-    let (direction, normal) = (a.direction(), a.normal());
-    let along = |p: &Point2<f64>| direction.dot(&(p - a.p0));
-    let (t0, t1) = (along(&b.p0), along(&b.p1));
-    let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(a.length()));
-    if to <= from {
-        return 0.0;
-    }
-    let across = |t: f64| normal.dot(&(b.at((t - t0) / (t1 - t0)) - a.p0)).abs();
-    if across(from).max(across(to)) <= distance_px {
-        to - from
-    } else {
-        0.0
-    }
 }

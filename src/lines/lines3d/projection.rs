@@ -2,7 +2,11 @@
 
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
+use super::track::LineSupport;
 use crate::base::geometry::{Segment2, Segment3};
+use crate::base::line_linker::LineLinker;
+use crate::lines::lines2d::GuidedEdge;
+use crate::orienting::scene::Scene;
 use crate::photographs::camera::Camera;
 
 /// The image of a directed 3D line, with the exact projective map along it.
@@ -18,15 +22,6 @@ pub struct ProjectedLine {
     pub direction: Vector2<f64>,
     /// The image line, `l . (x, y, 1)` = signed distance in pixels.
     pub line: Vector3<f64>,
-}
-
-/// Largest distance of a segment from a line's image, for [`ProjectedLine::contains`].
-#[derive(Clone, Copy, Debug)]
-pub struct ReprojectionGate {
-    /// Distance allowed in addition to three standard deviations of the line, px.
-    pub width_px: f64,
-    /// Largest standard deviation of a line's image that is compared, px.
-    pub max_sigma_px: f64,
 }
 
 impl ProjectedLine {
@@ -72,23 +67,31 @@ impl ProjectedLine {
         let gradient = self.m.tr_mul(&self.line) / (self.a.z + t * self.b.z);
         gradient.dot(&(covariance * gradient)).max(0.0).sqrt()
     }
+}
 
-    /// Do both ends of a segment lie on the image line, within the gate and three standard
-    /// deviations of the line there? `covariance_at` is that of the line's point at `t` metres,
-    /// m^2.
-    pub fn contains(
-        &self,
-        segment: &Segment2,
-        gate: ReprojectionGate,
-        covariance_at: impl Fn(f64) -> Matrix3<f64>,
-    ) -> bool {
-        [segment.p0, segment.p1].iter().all(|x| {
-            let t = self.t_of(x);
-            let (sigma, off) = (self.sigma_px(t, &covariance_at(t)), self.distance(x));
-            sigma <= gate.max_sigma_px
-                && off * off <= gate.width_px * gate.width_px + 9.0 * sigma * sigma
+/// Does the image of a line lie on the edges of another, in two of three views that show one
+/// (B99 3.4)? A line is given with the covariance of its point at `t` metres, m^2.
+pub(crate) fn reprojects_onto(
+    scene: &Scene,
+    (line, covariance_at): (&Segment3, impl Fn(f64) -> Matrix3<f64>),
+    onto: &[LineSupport],
+    linker: &LineLinker,
+) -> bool {
+    let is_on_edge = |edge: &GuidedEdge| {
+        let image = ProjectedLine::new(scene.camera(edge.view), line);
+        image.is_some_and(|image| {
+            (edge.segment.ends().iter()).all(|x| {
+                let t = image.t_of(x);
+                let linker = linker.known_to(image.sigma_px(t, &covariance_at(t)));
+                linker.distance(image.distance(x)) >= 0.0
+            })
         })
-    }
+    };
+    let edges = onto.iter().filter_map(|s| s.edge.as_ref());
+    let (on, all) = edges.fold((0, 0), |(on, all), edge| {
+        (on + usize::from(is_on_edge(edge)), all + 1)
+    });
+    3 * on >= 2 * all
 }
 
 #[cfg(test)]

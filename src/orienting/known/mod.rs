@@ -8,6 +8,7 @@
 //!    geo_keys   the system by the keys of GeoTIFF and LAS
 //! footprint     outlines in plan: inside or outside, and how far from the border
 //!    geojson, city_json    its readers
+//! comparison    what the images say of one of them
 //! ```
 //!
 //! Files are recognised by their content. Invariant: a reader takes any bytes and returns a value
@@ -19,6 +20,7 @@
 
 mod ascii_grid;
 mod city_json;
+mod comparison;
 mod footprint;
 mod geo_keys;
 mod geojson;
@@ -30,6 +32,8 @@ mod system;
 #[cfg(test)]
 mod tests;
 
+pub use comparison::{KnownComparison, KnownShift, KnownThing, KnownVerdict};
+pub(crate) use comparison::{belongs_here, best_shift};
 pub use footprint::Footprint;
 pub use height_grid::HeightGrid;
 pub use system::WorldSystem;

@@ -19,7 +19,7 @@ impl StageDefinition for Coplanar {
     const NAME: &'static str = "coplanar";
     const TITLE: &'static str = "Coplanar sets";
     const SECTION: &'static str = "B99 2, 5";
-    const READS: &'static [&'static str] = &["lines3d", "roof.border_nats_per_m"];
+    const READS: &'static [&'static str] = &["roof.border_nats_per_m"];
     const NEEDS: &'static [Stage] = &[Stage::Segments, Stage::Lines];
 
     const PROPOSALS: Option<fn(&Found) -> Vec<ProposedPlane>> = Some(|found| {
@@ -30,7 +30,7 @@ impl StageDefinition for Coplanar {
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let segments = &required(&before.segments).value;
         let lines = &required(&before.lines).value;
-        Ok(coplanar_sets(scene, lines, segments, &params.lines3d, &params.roof).into())
+        Ok(coplanar_sets(scene, lines, segments, &params.roof).into())
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {

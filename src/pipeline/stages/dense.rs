@@ -4,6 +4,7 @@ use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{from_bytes, required, to_bytes};
 use crate::base::execution::Sharded;
 use crate::base::params::{Params, Source};
+use crate::orienting::known::KnownThing;
 use crate::orienting::scene::Scene;
 use crate::planes::dense::{CloudComparison, DensePlane, DenseTrace, dense_planes};
 use crate::planes::grouping::ProposedPlane;
@@ -54,7 +55,7 @@ impl StageDefinition for Dense {
         Findings {
             counts,
             warnings: cloud
-                .and_then(CloudComparison::warning)
+                .and_then(|cloud| cloud.compared.warning(KnownThing::PointCloud))
                 .into_iter()
                 .collect(),
         }

@@ -4,9 +4,10 @@ use super::{Findings, Results, Stage, StageDefinition};
 use super::{from_bytes, required, to_bytes};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
+use crate::orienting::known::KnownThing;
 use crate::orienting::scene::Scene;
 use crate::planes::objectspace::ground_of_clusters;
-use crate::planes::terrain::{Ground as Surface, TerrainComparison};
+use crate::planes::terrain::Ground as Surface;
 
 /// The ground, which has a height everywhere.
 pub(super) type Found = Surface;
@@ -34,7 +35,7 @@ impl StageDefinition for Ground {
     }
 
     fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {
-        let terrain = found.terrain().and_then(TerrainComparison::warning);
+        let terrain = (found.terrain()).and_then(|terrain| terrain.warning(KnownThing::Terrain));
         Findings {
             counts: Vec::new(),
             warnings: terrain.into_iter().collect(),

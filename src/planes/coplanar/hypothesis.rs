@@ -1,6 +1,6 @@
 //! Hypotheses about the shape of a roof, weighed by likelihoods instead of thresholds.
 //!
-//! A relation c = 0 (an end lies in a plane, two sides are square, two slopes are equal) is weighed
+//! A relation c = 0 (a segment runs along a side, say) is weighed
 //! by its Bayes factor. If it holds, c is normal with the variance that the covariances give it; if
 //! it does not, c is anything within a range:
 //!
@@ -16,15 +16,10 @@ use crate::base::math::ln;
 
 /// Share of the corners of roof facets that are square in plan. Measured: 904 of 1274 in the
 /// sixteen fitting scenes.
-pub(crate) const SQUARE: f64 = 0.71;
-/// Share of their sides that are level. Measured: 706 of 1274.
-pub(crate) const LEVEL: f64 = 0.55;
-/// Share of the level ridges with equal slopes on both sides. Measured: 76 of 76.
-pub(crate) const SYMMETRIC: f64 = 0.987;
-
+pub(super) const SQUARE: f64 = 0.71;
 /// Logarithm of the odds of a relation c = 0 of which `c` was measured with a variance, where c
 /// could be anything within a range, and which holds with a probability before it is measured.
-pub(crate) fn relation_nats(c: f64, variance: f64, range: f64, probability: f64) -> f64 {
+pub(super) fn relation_nats(c: f64, variance: f64, range: f64, probability: f64) -> f64 {
     log_normal(c, variance) + ln(range) + log_odds(probability)
 }
 
@@ -34,7 +29,7 @@ pub(crate) fn log_normal(c: f64, variance: f64) -> f64 {
 }
 
 /// Logarithm of the density of the error of a line's end along the line (Laplace's distribution).
-pub(crate) fn log_end_error(error_m: f64) -> f64 {
+pub(super) fn log_end_error(error_m: f64) -> f64 {
     -error_m.abs() / END_M - ln(2.0 * END_M)
 }
 

@@ -104,11 +104,11 @@ impl Outline {
         self.corners.iter().map(|p| plane.lift(p.x, p.y)).collect()
     }
 
-    /// Is it convex and counter-clockwise, every side longer than `least_m`?
-    pub(super) fn is_convex(&self, least_m: f64) -> bool {
+    /// Is it convex and counter-clockwise?
+    fn is_convex(&self) -> bool {
         (0..self.len()).all(|k| {
             let (before, after) = (self.along(k + self.len() - 1), self.along(k));
-            after.norm() > least_m && before.perp(&after) >= 0.0
+            after.norm() > 1e-3 && before.perp(&after) >= 0.0
         })
     }
 
@@ -217,7 +217,7 @@ impl Outline {
             let nats = prior + log_end_error(error) + ln(side.norm());
             let mut outline = self.clone();
             outline.corners[corner] = at;
-            outline.is_convex(1e-3).then_some((kind, nats, outline))
+            outline.is_convex().then_some((kind, nats, outline))
         });
         moved.collect()
     }

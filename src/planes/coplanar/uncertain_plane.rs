@@ -4,7 +4,7 @@
 //! variance is `m' S m` with m = (-a, -b, 1) and S the covariance of the end across its line, which
 //! depends on the plane, so that the fit is repeated with the weights of the last one.
 
-use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
+use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
 use super::hypothesis::log_normal;
 use crate::base::evidence::UncertaintyTable;
@@ -96,15 +96,6 @@ impl UncertainPlane {
             .into()
     }
 
-    /// Rise along the steepest direction, metres a metre, its direction, and its variance.
-    pub(crate) fn slope(&self) -> (f64, Vector2<f64>, f64) {
-        let rise = self.coefficients.yz();
-        let slope = rise.norm();
-        let along = rise / slope.max(1e-9);
-        let covariance: Matrix2<f64> = self.covariance.fixed_view::<2, 2>(1, 1).into();
-        (slope, along, along.dot(&(covariance * along)))
-    }
-
     /// Logarithm of the odds that both ends of a line lie in the plane rather than anywhere within
     /// `range_m` of height. A line that does not lie in it may still run along it: half of those
     /// do, so that the second end says little more than the first unless it contradicts.
@@ -131,11 +122,6 @@ impl UncertainPlane {
         let p = end.at.xy();
         let variance = self.variance_of(end, pixel_m) + self.variance(&p);
         log_normal(end.at.z - self.height(&p), variance) + ln(range_m)
-    }
-
-    /// Standard deviation of the height of an end above the plane, metres: its own.
-    pub(crate) fn sigma_of(&self, end: &LineEnd, pixel_m: f64) -> f64 {
-        self.variance_of(end, pixel_m).sqrt()
     }
 
     /// Derivatives of the height at a plan position by the coefficients.
@@ -195,8 +181,6 @@ mod tests {
         assert!(nats(4.0, 7.5) > 3.0);
         assert!(nats(4.0, 8.5) < -5.0, "it rises out of it");
         assert!(nats(5.0, 8.5) < -5.0, "it runs above it");
-        let (slope, along, variance) = plane.slope();
-        assert!((slope - 0.7).abs() < 1e-9 && along.y > 0.99 && variance > 0.0);
     }
 
     #[test]

@@ -30,9 +30,11 @@ use super::surface_class::SurfaceEvidence;
 use crate::base::evidence::WindowEvidenceTable;
 use crate::base::geometry::{Plane, bounds};
 use crate::base::ids::ProposalOrigin;
-use crate::base::math::{exp, hypot, larger, ln, smaller};
+use crate::base::math::{hypot, larger, smaller};
 use crate::base::params::PointCloudParams;
-use crate::orienting::known::PointCloud;
+use crate::orienting::known::{
+    KnownComparison, KnownShift, KnownVerdict, PointCloud, belongs_here, best_shift,
+};
 use crate::planes::grouping::ProposedPlane;
 use crate::planes::photoconsistency::PlanGrid;
 use crate::planes::terrain::Ground;
@@ -41,38 +43,13 @@ use crate::planes::terrain::Ground;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct CloudComparison {
-    /// Its file.
-    pub file: String,
-    /// Standard deviation of its heights as stated, metres.
-    pub accuracy_m: f64,
-    /// What was done with it.
-    pub verdict: CloudVerdict,
-    /// Probability that it belongs to this place, 0 to 1.
-    pub belongs: f64,
-    /// By so much it was moved before it was used, east, north and up, metres.
-    pub moved_m: [f64; 3],
+    /// As a whole.
+    pub compared: KnownComparison,
     /// Share of the surfaces which the images show clearly, as roofs or as ground, that it has too;
     /// absent where they show too little.
     pub agreement: Option<f64>,
     /// The planes that it proposes.
     pub planes: Vec<CloudPlane>,
-}
-
-/// What was done with a point cloud.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-#[serde(rename_all = "kebab-case")]
-pub enum CloudVerdict {
-    /// It counted as it is.
-    Used,
-    /// It was moved as a whole to what the images show, and counted.
-    Moved,
-    /// The images show too little to compare it with, and it counted as it is.
-    Unchecked,
-    /// The images contradict it as a whole, and it was left out.
-    LeftOut,
-    /// Hardly any of its points lie in the scene.
-    Elsewhere,
 }
 
 /// A plane in a point cloud.
@@ -103,38 +80,14 @@ impl CloudComparison {
     /// Does it count?
     pub fn counts(&self) -> bool {
         !matches!(
-            self.verdict,
-            CloudVerdict::LeftOut | CloudVerdict::Elsewhere
+            self.compared.verdict,
+            KnownVerdict::Contradicted | KnownVerdict::Elsewhere
         )
-    }
-
-    /// What the user should know; nothing where the images confirm the cloud.
-    pub fn warning(&self) -> Option<String> {
-        let file = &self.file;
-        let [x, y, z] = self.moved_m;
-        Some(match self.verdict {
-            CloudVerdict::Used => return None,
-            CloudVerdict::Moved => format!(
-                "{file} was moved by {x:.2} m east, {y:.2} m north and {z:.2} m up, to what the \
-                 images show"
-            ),
-            CloudVerdict::Unchecked => format!(
-                "the images show too little to check {file}; its points on roofs were used as \
-                 they are"
-            ),
-            CloudVerdict::LeftOut => format!(
-                "the images contradict {file} as a whole, so its points on roofs were left out: \
-                 check that it is of this place"
-            ),
-            CloudVerdict::Elsewhere => {
-                format!("hardly any point of {file} lies in the scene: check its coordinate system")
-            }
-        })
     }
 
     /// The points of a cloud as they were moved, local frame.
     pub fn placed(&self, cloud: &PointCloud) -> Vec<Point3<f64>> {
-        let by = Vector3::from(self.moved_m);
+        let by = self.compared.moved_m();
         cloud.points.iter().map(|p| p.cast() + by).collect()
     }
 }
@@ -159,8 +112,6 @@ const PATCH_PIXELS: f64 = 0.3;
 const SIGMAS: f64 = 2.0;
 /// No height or place is known better, metres, whatever is stated.
 const LEAST_SIGMA_M: f64 = 1e-3;
-/// A cloud that belongs here with less probability is left out.
-const DOUBTFUL: f64 = 0.5;
 
 /// What dense matching found, for the comparison.
 pub(super) struct Matched<'a> {
@@ -183,12 +134,9 @@ pub(super) fn compare(
         .filter(is_here)
         .map(|p| p.cast())
         .collect();
+    let unchecked = KnownComparison::new(&cloud.file, cloud.accuracy_m);
     let mut comparison = CloudComparison {
-        file: cloud.file.clone(),
-        accuracy_m: cloud.accuracy_m,
-        verdict: CloudVerdict::Elsewhere,
-        belongs: 0.0,
-        moved_m: [0.0; 3],
+        compared: unchecked.clone(),
         agreement: None,
         planes: Vec::new(),
     };
@@ -201,44 +149,32 @@ pub(super) fn compare(
         sigma_m: hypot(cloud.accuracy_m, patch_m).max(LEAST_SIGMA_M),
         place_sigma_m: params.place_sigma_m.max(LEAST_SIGMA_M),
     };
-    comparison.verdict = CloudVerdict::Unchecked;
-    comparison.belongs = params.belongs;
-    if let Some(shift) = surface.best_shift(&points) {
-        let away = hypot(shift.x, shift.y) > SIGMAS * hypot(params.place_sigma_m, patch_m)
-            || shift.z.abs() > SIGMAS * surface.sigma_m;
-        let moved = if away { shift } else { Vector3::zeros() };
-        // What no clear roof or ground confirms is neither moved nor believed more than before.
-        if let Some([agree, differ]) = agreement(matched, &points, &moved, &surface) {
-            let parts = grid.step * grid.step / params.part_m2;
-            let odds = log_odds(params.belongs)
-                + agree * parts * (ln(share(params.agreement)) - ln(share(params.chance)))
-                + differ
-                    * parts
-                    * (ln(1.0 - share(params.agreement)) - ln(1.0 - share(params.chance)));
-            comparison.agreement = Some(agree / (agree + differ));
-            comparison.belongs = 1.0 / (1.0 + exp(-odds));
-            comparison.moved_m = moved.into();
-            comparison.verdict = match away {
-                _ if comparison.belongs < DOUBTFUL => CloudVerdict::LeftOut,
-                true => CloudVerdict::Moved,
-                false => CloudVerdict::Used,
-            };
-        }
-    }
+    let shift = surface.best_shift(&points).map(|by| KnownShift {
+        by,
+        explained_m: [
+            SIGMAS * hypot(params.place_sigma_m, patch_m),
+            SIGMAS * surface.sigma_m,
+        ],
+    });
+    // What no clear roof or ground confirms is neither moved nor believed more than before.
+    let found = shift.and_then(|shift| {
+        let moved = match shift.is_real() {
+            true => shift.by,
+            false => Vector3::zeros(),
+        };
+        Some((shift, agreement(matched, &points, &moved, &surface)?))
+    });
+    comparison.agreement = found.map(|(_, [agree, differ])| agree / (agree + differ));
+    let parts = found.map_or([0.0; 2], |(_, cells)| {
+        cells.map(|n| n * (grid.step * grid.step / params.part_m2))
+    });
+    let belongs = belongs_here(params.belongs, parts, params.agreement, params.chance);
+    comparison.compared = unchecked.judged(found.map(|(shift, _)| shift), belongs);
     if comparison.counts() {
         let placed = comparison.placed(cloud);
         comparison.planes = planes(&placed, cloud.accuracy_m, matched, params);
     }
     comparison
-}
-
-/// A share that is neither nothing nor all, whatever the parameter is.
-fn share(parameter: f64) -> f64 {
-    parameter.clamp(1e-3, 1.0 - 1e-3)
-}
-
-fn log_odds(probability: f64) -> f64 {
-    ln(share(probability)) - ln(1.0 - share(probability))
 }
 
 /// The surface that the views agree on.
@@ -296,9 +232,7 @@ impl Surface<'_> {
         if starts.len() == 1 {
             return None;
         }
-        let nats = crate::base::execution::map(&starts, |_, by| self.nats(&points, by));
-        let best = (0..starts.len()).fold(0, |best, i| if nats[i] > nats[best] { i } else { best });
-        let (mut best, mut most) = (starts[best], nats[best]);
+        let (mut best, mut most) = best_shift(&starts, |by| self.nats(&points, by))?;
         let mut step = Vector3::new(0.5 * STEP_M, 0.5 * STEP_M, 1.5 * self.sigma_m);
         for _ in 0..HALVINGS {
             for _ in 0..2 {

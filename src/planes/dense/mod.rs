@@ -20,7 +20,7 @@ mod segmentation;
 mod surface_class;
 mod sweep;
 
-pub use cloud::{CloudComparison, CloudPlane, CloudVerdict};
+pub use cloud::{CloudComparison, CloudPlane};
 pub use patch::Patch;
 pub use surface_class::{SurfaceClass, SurfaceEvidence};
 

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::base::geometry::{Plane, Segment3};
 use crate::base::ids::ViewId;
+use crate::base::line_linker::LineLinker;
 use crate::base::plan_index::PlanIndex;
 use crate::lines::linematch::EDGE_MARGIN_PX;
 use crate::lines::lines2d::ImageSegment;
@@ -39,10 +40,6 @@ const FEW: usize = 3;
 const MIN_OF_FEW: usize = 2;
 /// Shortest line from the only view of a place, metres. Assumption: shorter ones bound no facet.
 const LEAST_SINGLE_VIEW_M: f64 = 1.0;
-/// Segments cast onto the plane belong to one line within this many ground pixels, ...
-const SAME_LINE_PX: f64 = 1.5;
-/// ... and this sine of the angle.
-const SAME_LINE_SINE: f64 = 0.06;
 
 /// A segment cast onto the plane, in plan.
 #[derive(Clone, Copy)]
@@ -53,6 +50,10 @@ struct CastSegment {
 }
 
 impl CastSegment {
+    fn ends(&self) -> [Point2<f64>; 2] {
+        [self.a, self.b]
+    }
+
     fn length(&self) -> f64 {
         (self.b - self.a).norm()
     }
@@ -106,17 +107,17 @@ pub(crate) fn lines_in_plane(
             .then(p.view.cmp(&q.view))
             .then(p.a.x.total_cmp(&q.a.x))
     });
-    let index = PlanIndex::new(casts.iter().map(|c| [c.a, c.b]));
-    let tolerance = SAME_LINE_PX * pixel;
+    let index = PlanIndex::new(casts.iter().map(CastSegment::ends));
+    let linker = LineLinker::cast_onto_plane(pixel);
     let mut used = vec![false; casts.len()];
     let mut found = Vec::new();
     for i in 0..casts.len() {
         if used[i] {
             continue;
         }
-        let near = index.touching([casts[i].a, casts[i].b], tolerance);
+        let near = index.touching(casts[i].ends(), linker.apart);
         let mut members: Vec<usize> = (near.map(|j| j as usize))
-            .filter(|&j| !used[j] && coincide(&casts[i], &casts[j], tolerance))
+            .filter(|&j| !used[j] && linker.connects(&casts[i].ends(), &casts[j].ends()))
             .collect();
         members.sort();
         let mut views: Vec<ViewId> = members.iter().map(|&j| casts[j].view).collect();
@@ -173,19 +174,6 @@ fn cast(
 ) -> Option<Point2<f64>> {
     let t = above / plane.normal.dot(ray);
     (t.is_finite() && t > 0.0).then(|| (center + ray * t).xy())
-}
-
-/// Same direction (by contrast too), same line, overlapping.
-fn coincide(reference: &CastSegment, other: &CastSegment, tolerance: f64) -> bool {
-    let d = (reference.b - reference.a) / reference.length();
-    let e = (other.b - other.a) / other.length();
-    if d.dot(&e) < 0.0 || d.perp(&e).abs() > SAME_LINE_SINE {
-        return false;
-    }
-    let offset = |p: &Point2<f64>| d.perp(&(p - reference.a)).abs();
-    let along = |p: &Point2<f64>| (p - reference.a).dot(&d);
-    let overlap = along(&other.b).min(reference.length()) - along(&other.a).max(0.0);
-    offset(&other.a) <= tolerance && offset(&other.b) <= tolerance && overlap > 0.3 * other.length()
 }
 
 /// Length-weighted mean line of the casts. It reaches as far as at least two views do, and as far

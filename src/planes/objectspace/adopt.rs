@@ -7,11 +7,14 @@
 //! Tried without gain: to measure the lines that stay again in all views, as borders of facets are.
 //! Edges that only regions show are weak, and what lies along one is often another.
 
+use nalgebra::Point2;
+
 use super::clusters::{END_PX, LEAST_COVERAGE, PARALLEL_DEG};
 use super::oris::RegionLine;
 use super::stages::{FoundLine, world_lines};
 use crate::base::geometry::{Segment2, Segment3};
 use crate::base::ids::ViewId;
+use crate::base::line_linker::LineLinker;
 use crate::base::params::ClusterParams;
 use crate::lines::lines3d::{Line3d, LineOrigin, ProjectedLine};
 use crate::orienting::scene::Scene;
@@ -74,17 +77,16 @@ fn open_length(line: &Segment2, others: &[Segment2], params: &ClusterParams) -> 
     // A short line's direction is as uncertain as its ends.
     let of_ends = END_PX / line.length().max(1e-9);
     let sine = of_ends.max(crate::base::math::sin(PARALLEL_DEG.to_radians()));
+    let linker = LineLinker::explained_image_line(sine, params.gate_px);
     let direction = line.direction();
-    let parallel = |o: &&Segment2| o.direction().perp(&direction).abs() < sine;
-    let beside: Vec<&Segment2> = others.iter().filter(parallel).collect();
+    let beside: Vec<[Point2<f64>; 2]> = (others.iter().map(Segment2::ends))
+        .filter(|[p, q]| linker.angle(&direction, &(q - p)) >= 0.0)
+        .collect();
     let samples = line.length().ceil().max(1.0);
     let at = |i: usize| line.at((i as f64 + 0.5) / samples);
-    let open = (0..samples as usize).map(at).filter(|p| {
-        beside.iter().all(|o| {
-            let t = (p - o.p0).dot(&o.direction()).clamp(0.0, o.length());
-            (p - (o.p0 + o.direction() * t)).norm() > params.gate_px
-        })
-    });
+    let open = (0..samples as usize)
+        .map(at)
+        .filter(|p| !beside.iter().any(|line| linker.passes(line, p)));
     open.count() as f64 / samples * line.length()
 }
 

@@ -5,79 +5,13 @@
 //! with it: the lowest difference that many positions share is that height. It is taken out where
 //! it exceeds what both accuracies explain.
 
-use nalgebra::{Point2, Point3, Vector2};
-use serde::{Deserialize, Serialize};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::Ground;
 use super::common_plane::{ONE_HEIGHT, low_height};
 use crate::base::geometry::Plane;
 use crate::base::math::{hypot, larger, median};
-use crate::orienting::known::Terrain;
-
-/// How a terrain model compares with the images.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-pub struct TerrainComparison {
-    /// Its file.
-    pub file: String,
-    /// Standard deviation of its heights as stated, metres.
-    pub accuracy_m: f64,
-    /// How far the ground that the images show lies above it, metres; `None` where they show too
-    /// little.
-    pub images_above_m: Option<f64>,
-    /// What was done with it.
-    pub verdict: TerrainVerdict,
-}
-
-/// What was done with a terrain model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-#[serde(rename_all = "kebab-case")]
-pub enum TerrainVerdict {
-    /// The images confirm its heights.
-    Confirmed,
-    /// The images show too little to tell.
-    Unchecked,
-    /// It was moved to the height that the images show.
-    Moved,
-    /// It follows the roofs: a surface model, which was not used.
-    Surface,
-    /// It covers too little of the place, and was not used.
-    Elsewhere,
-}
-
-impl TerrainComparison {
-    /// What the user should know; nothing where the images confirm the model.
-    pub fn warning(&self) -> Option<String> {
-        let Self {
-            file,
-            images_above_m,
-            verdict,
-            ..
-        } = self;
-        let above = images_above_m.unwrap_or(0.0);
-        Some(match verdict {
-            TerrainVerdict::Confirmed => return None,
-            TerrainVerdict::Unchecked => {
-                format!("{file} gives the ground; the images show too little of it to check that")
-            }
-            TerrainVerdict::Moved => format!(
-                "{file} lies {:.1} m {} the ground that the images show, as with another datum of \
-                 heights: it was moved to it",
-                above.abs(),
-                if above > 0.0 { "below" } else { "above" }
-            ),
-            TerrainVerdict::Surface => format!(
-                "{file} follows the roofs, so it is a surface model and was not used: give a \
-                 terrain model"
-            ),
-            TerrainVerdict::Elsewhere => format!(
-                "{file} covers less than half of the place and was not used: check its \
-                 coordinate system"
-            ),
-        })
-    }
-}
+use crate::orienting::known::{KnownComparison, KnownShift, Terrain};
 
 /// Standard deviation of the ground as the images show it, metres, as in the comparison of the
 /// views on it: a few decimetres.
@@ -104,7 +38,7 @@ const ROOFS_LEFT: f64 = 0.7;
 
 impl Ground {
     /// How a terrain model compares with the images, where one is known.
-    pub fn terrain(&self) -> Option<&TerrainComparison> {
+    pub fn terrain(&self) -> Option<&KnownComparison> {
         self.terrain.as_ref()
     }
 
@@ -116,34 +50,25 @@ impl Ground {
         samples: &[Point3<f64>],
         ends: &[Point3<f64>],
     ) -> Self {
-        let comparison = |images_above_m, verdict| TerrainComparison {
-            file: terrain.file.clone(),
-            accuracy_m: terrain.accuracy_m,
-            images_above_m,
-            verdict,
-        };
         let offset = offset_of(terrain, samples);
         let certain = SIGMAS * hypot(terrain.accuracy_m, IMAGE_SIGMA_M);
-        let (verdict, lift) = match offset {
-            Some(_) if self.is_surface(terrain, samples, offset.unwrap_or(0.0)) => {
-                (TerrainVerdict::Surface, 0.0)
+        let shift = offset.map(|up| KnownShift {
+            by: Vector3::z() * up,
+            explained_m: [f64::INFINITY, certain],
+        });
+        let is_surface = offset.is_some_and(|up| self.is_surface(terrain, samples, up));
+        let belongs = if is_surface { 0.0 } else { 1.0 };
+        let unused = KnownComparison::new(&terrain.file, terrain.accuracy_m);
+        let mut comparison = unused.clone().judged(shift, belongs);
+        if !is_surface {
+            let lift = comparison.moved_m().z;
+            let known = |p: &Point2<f64>| Some(terrain.z_at(p.x, p.y)? + lift);
+            match self.laid(ends, known) {
+                Some(ground) => self = ground,
+                None => comparison = unused,
             }
-            Some(offset) if offset.abs() > certain => (TerrainVerdict::Moved, offset),
-            Some(_) => (TerrainVerdict::Confirmed, 0.0),
-            None => (TerrainVerdict::Unchecked, 0.0),
-        };
-        let known = |p: &Point2<f64>| Some(terrain.z_at(p.x, p.y)? + lift);
-        let verdict = match verdict {
-            TerrainVerdict::Surface => verdict,
-            verdict => match self.laid(ends, known) {
-                Some(ground) => {
-                    self = ground;
-                    verdict
-                }
-                None => TerrainVerdict::Elsewhere,
-            },
-        };
-        self.terrain = Some(comparison(offset, verdict));
+        }
+        self.terrain = Some(comparison);
         self
     }
 

@@ -14,8 +14,6 @@ mod given;
 mod surface;
 mod sweep;
 
-pub use given::{TerrainComparison, TerrainVerdict};
-
 use common_plane::{MIN_SAMPLES, STANDS_OUT, is_within, level_plane};
 use nalgebra::{Point2, Point3, Vector2};
 use serde::{Deserialize, Serialize};
@@ -25,6 +23,7 @@ use crate::base::execution::Sharded;
 use crate::base::geometry::{Plane, Segment3};
 use crate::base::math::{larger, smaller};
 use crate::lines::lines3d::Line3d;
+use crate::orienting::known::KnownComparison;
 use crate::orienting::scene::Scene;
 
 /// The ground: a plane and, on a coarse grid over the scene, how far it rises above that.
@@ -40,7 +39,7 @@ pub struct Ground {
     /// The plane that the ground lies in as a whole; local frame.
     plane: Plane,
     /// How a terrain model that is known compares with the images.
-    terrain: Option<TerrainComparison>,
+    terrain: Option<KnownComparison>,
 }
 
 /// Cell of the ground grid, metres.

@@ -5,6 +5,7 @@ use nalgebra::{Point2, Point3};
 use super::draft::{At, Draft};
 use super::outcome::NotApplied;
 use crate::base::geometry::Segment3;
+use crate::base::line_linker::LineLinker;
 use crate::base::params::FacetPlace;
 use crate::roofs::model::Facet;
 
@@ -15,8 +16,6 @@ const SAME_HEIGHT_M: f64 = 1.0;
 const SAME_NORMAL_DEG: f64 = 15.0;
 /// The corner nearest to a place is meant within this distance, metres. Assumption.
 const SAME_CORNER_M: f64 = 0.5;
-/// An edge is meant if it lies within this distance of a line, metres. Assumption.
-const SAME_EDGE_M: f64 = 0.4;
 
 /// A corner of a facet; it counts through the rings of the facet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,13 +76,8 @@ impl Draft {
     /// The sides of facets of one building that lie on an edge: pairs of corners.
     pub(super) fn edge(&self, ends: &[Point3<f64>; 2]) -> Result<Vec<[Corner; 2]>, NotApplied> {
         let edge = Segment3::new(ends[0], ends[1]);
-        let length = edge.length();
-        let lies_on = |p: &Point3<f64>| {
-            let along = (p - edge.p0).dot(&edge.direction());
-            edge.line_distance(p) <= SAME_EDGE_M
-                && along >= -SAME_EDGE_M
-                && along <= length + SAME_EDGE_M
-        };
+        let linker = LineLinker::named_edge();
+        let lies_on = |p: &Point3<f64>| linker.passes(ends, p);
         let mut found: Vec<[Corner; 2]> = Vec::new();
         for (of, f) in self.facets() {
             let mut first = 0;
@@ -91,7 +85,7 @@ impl Draft {
                 for (i, p) in ring.iter().enumerate() {
                     let next = (i + 1) % ring.len();
                     // A side whose ends are one place of the edge does not lie along it.
-                    let is_along = (ring[next] - p).dot(&edge.direction()).abs() > SAME_EDGE_M;
+                    let is_along = (ring[next] - p).dot(&edge.direction()).abs() > linker.beyond;
                     if is_along && lies_on(p) && lies_on(&ring[next]) {
                         found.push([first + i, first + next].map(|corner| Corner { of, corner }));
                     }

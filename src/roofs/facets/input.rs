@@ -34,8 +34,8 @@ impl PlacedCloud {
     ) -> Option<Self> {
         Some(Self {
             points: compared.placed(scene.known.point_cloud.as_ref()?),
-            accuracy_m: compared.accuracy_m,
-            belongs: compared.belongs,
+            accuracy_m: compared.compared.accuracy_m,
+            belongs: compared.compared.belongs,
             params: params.clone(),
         })
     }

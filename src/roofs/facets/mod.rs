@@ -44,6 +44,6 @@ pub use compete::{GroupingTrace, competing_planes};
 pub use competing_planes::CompetingPlanes;
 pub use input::{FacetInput, PlacedCloud};
 pub use reconstruct::{FacetTrace, RoofTrace, reconstruct_roofs};
-pub use register::{FootprintFinding, FootprintVerdict, RegisterTrace, RegisterVerdict};
+pub use register::{FootprintFinding, FootprintVerdict, RegisterTrace};
 pub use verification::{FacetRejection, RejectedFacet};
 pub(crate) use verification::{PartVisibility, largest_slope, windows_inside};

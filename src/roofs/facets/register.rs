@@ -19,15 +19,15 @@
 
 mod comparison;
 
-pub use comparison::{FootprintFinding, FootprintVerdict, RegisterTrace, RegisterVerdict};
+pub use comparison::{FootprintFinding, FootprintVerdict, RegisterTrace};
 
 use nalgebra::{Point2, Vector2};
 
 use super::borders::Arrangement;
 use crate::base::evidence::EvidenceTerm;
-use crate::base::math::{erfc, exp, larger, ln, normal_density, smaller};
+use crate::base::math::{erfc, larger, ln, normal_density, smaller};
 use crate::base::params::RegisterParams;
-use crate::orienting::known::Register;
+use crate::orienting::known::{Register, belongs_here, best_shift};
 use crate::photographs::raster::mark_inside;
 use crate::planes::photoconsistency::PlanGrid;
 use crate::roofs::model::Facet;
@@ -138,7 +138,12 @@ impl<'a> RegisterEvidence<'a> {
                 false => outside += self.parts(1.0),
             }
         }
-        self.belongs = belongs_here(inside, outside, chance, self.params);
+        let RegisterParams {
+            belongs,
+            completeness,
+            ..
+        } = *self.params;
+        self.belongs = belongs_here(belongs, [inside, outside], completeness, chance);
     }
 
     /// What it says for a roof in every cell, nats.
@@ -276,32 +281,26 @@ impl<'a> RegisterEvidence<'a> {
         sigma_m: f64,
     ) -> [isize; 2] {
         let most = (MOST_SHIFT_M / self.grid.step) as isize;
-        let shifts: Vec<[isize; 2]> = (-most..=most)
+        let mut shifts: Vec<[isize; 2]> = (-most..=most)
             .flat_map(|y| (-most..=most).map(move |x| [x, y]))
             .collect();
+        // Of equally good ones the nearest counts.
+        shifts.sort_by_key(|[x, y]| x * x + y * y);
         let table: Vec<f64> = (0..=TABLE)
             .map(|i| self.certain_nats((2.0 * i as f64 / TABLE as f64 - 1.0) * REACH_M))
             .collect();
         let nats =
             |depth: f64| table[((depth / REACH_M + 1.0) * 0.5 * TABLE as f64).round() as usize];
         let places: Vec<usize> = among().collect();
-        let explained = crate::base::execution::map(&shifts, |_, &[x, y]| {
+        let explained = |&[x, y]: &[isize; 2]| {
             let [of_roofs, of_all] = places.iter().fold([0.0, 0.0], |[roof, all], &k| {
                 let nats = nats(self.depth_moved(k, [x + self.moved[0], y + self.moved[1]]));
                 [roof + if roofs[k] { nats } else { 0.0 }, all + nats]
             });
             let away = ((x * x + y * y) as f64).sqrt() * self.grid.step / sigma_m;
             self.parts(2.0 * of_roofs - of_all) - 0.5 * away * away
-        });
-        let mut best = 0;
-        for i in 1..shifts.len() {
-            let is_nearer = shifts[i][0].pow(2) + shifts[i][1].pow(2)
-                < shifts[best][0].pow(2) + shifts[best][1].pow(2);
-            if explained[i] > explained[best] || (explained[i] == explained[best] && is_nearer) {
-                best = i;
-            }
-        }
-        shifts[best]
+        };
+        best_shift(&shifts, explained).map_or([0, 0], |(shift, _)| shift)
     }
 }
 
@@ -314,34 +313,4 @@ const PARALLEL: f64 = 0.9;
 fn samples(low: f64, high: f64, origin: f64, step: f64, count: usize) -> std::ops::Range<usize> {
     let at = |v: f64| ((v - origin) / step).clamp(0.0, count as f64) as usize;
     at(low)..smaller(at(high) + 1, count)
-}
-
-/// Probability that a register belongs here: of so many roofs inside and outside of its footprints,
-/// which cover this share of the place.
-fn belongs_here(inside: f64, outside: f64, chance: f64, params: &RegisterParams) -> f64 {
-    let RegisterParams {
-        completeness,
-        belongs,
-        ..
-    } = *params;
-    let odds = ln(belongs / (1.0 - belongs))
-        + inside * ln(completeness / chance)
-        + outside * ln((1.0 - completeness) / (1.0 - chance));
-    1.0 / (1.0 + exp(-odds))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_register_belongs_where_its_footprints_hold_the_roofs() {
-        let params = RegisterParams::default();
-        let belongs = |inside, outside| belongs_here(inside, outside, 0.3, &params);
-        assert!((belongs(0.0, 0.0) - params.belongs).abs() < 1e-12);
-        assert!(belongs(10.0, 0.0) > belongs(0.0, 0.0));
-        assert!(belongs(0.0, 10.0) < 0.01);
-        // Roofs that fall into footprints as often as by chance speak against it.
-        assert!(belongs(3.0, 7.0) < belongs(0.0, 0.0));
-    }
 }

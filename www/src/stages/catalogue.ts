@@ -54,8 +54,7 @@ export function methodOfStage(name: StageName): Method {
 
 /** The stage views of a method. */
 export function tabsOf(method: Method): Tab[] {
-  const shown = stagesOf(method).filter((name) => STAGE_FACTS[name].hiddenIn?.includes(method) !== true);
-  return ["images", ...shown.filter(isTab)];
+  return ["images", ...stagesOf(method).filter(isTab)];
 }
 
 /** Tabs about the stages of method "rectangles" alone. */
@@ -71,6 +70,12 @@ export function tabTitle(tab: Tab): string {
 /** The view that tells most of a stage. */
 export function mainTabOf(name: StageName): Tab {
   return (STAGE_FACTS[name].shownBy ?? name) as Tab;
+}
+
+/** That view, if it is one of the method's. */
+export function shownTabOf(name: StageName, method: Method): Tab | null {
+  const tab = mainTabOf(name);
+  return tabsOf(method).includes(tab) ? tab : null;
 }
 
 /** The stage whose result a view shows; null where it needs none. */

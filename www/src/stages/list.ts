@@ -8,6 +8,7 @@ import { corrections } from "./corrections/stage";
 import { dense } from "./dense/stage";
 import { directions } from "./directions/stage";
 import { facets } from "./facets/stage";
+import { ground } from "./ground/stage";
 import { groups } from "./groups/stage";
 import { halfplanes } from "./halfplanes/stage";
 import { images } from "./images/stage";
@@ -30,6 +31,7 @@ const LIST = {
   clusters,
   rectangles,
   lines,
+  ground,
   coplanar,
   adjacency,
   halfplanes,

@@ -4,15 +4,13 @@
  */
 import type { Args, CallName, Result } from "../shared/calls";
 import type { ParamTree } from "../shared/paramTree";
-import type { Method, StageName } from "../shared/stages";
+import type { StageName } from "../shared/stages";
 
 export interface Stage {
   /** The stage whose tab shows it, where it has none of its own. */
   shownBy?: StageName;
   /** Title of its tab, where the core's own is too long. */
   tabTitle?: string;
-  /** Methods that have the stage, but nothing that its tab could show. */
-  hiddenIn?: readonly Method[];
   /** The slots of the results that are its own, as they are before it has run. */
   nothing?: object;
   /** Asks the core for what it adds to the results, once it has run. */

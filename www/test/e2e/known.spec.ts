@@ -68,7 +68,7 @@ test("terrain and footprints are listed, compared with the images, and left out 
   await expect(page.getByTestId("known-footprints")).toHaveCount(0);
   await openTab(page, "Facets");
   const found = page.getByTestId("known-footprints");
-  await expect(found).toContainText("It belongs to this place");
+  await expect(found).toContainText("The images confirm it");
   await expect(found.locator("[data-outcome=agrees]")).toContainText(/^1 agrees.*House 1$/);
   await expect(found.locator("[data-outcome=contradicted]")).toContainText(/^1 contradicted.*On the lawn$/);
 

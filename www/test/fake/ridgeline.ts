@@ -19,6 +19,7 @@ import type {
   GroundPicture,
   GroupingTrace,
   HalfPlane,
+  KnownComparison,
   LackingFile,
   LineRecord,
   MatchRecord,
@@ -29,7 +30,6 @@ import type {
   SideRecord,
   SideTrace,
   StageSummary,
-  TerrainComparison,
   TileReport,
 } from "../../src/shared/records";
 import { stagesOf } from "../../src/stages/catalogue";
@@ -258,7 +258,7 @@ export class Session implements CoreSession {
     return HALF_PLANES;
   }
 
-  terrain(): TerrainComparison | null {
+  terrain(): KnownComparison | null {
     return null;
   }
 

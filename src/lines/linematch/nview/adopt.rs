@@ -5,18 +5,13 @@
 //! contrasts are accepted in a further view that shows none like it: in two strips an eave may be
 //! bright on different sides, and before the shadow of the house visible in colour alone.
 
-use nalgebra::Point2;
-
 use super::context::{IsTaken, MatchContext};
 use crate::base::geometry::{Segment2, Segment3};
 use crate::base::ids::{SegmentId, ViewId};
+use crate::base::line_linker::LineLinker;
 use crate::lines::linematch::segment_geometry::{SegmentGeometry, SegmentRef};
 use crate::lines::lines2d::{GuidedEdge, SegmentKind, measure_edge};
 use crate::lines::lines3d::{ProjectedLine, doubly_covered};
-
-/// Largest distance of a measured edge from the segment of another line that is the same edge, px.
-/// Assumption: three times the scatter of the edges of one line (`position_floor_px`).
-const SAME_EDGE_PX: f64 = 0.3;
 
 impl MatchContext<'_> {
     /// The edge of a view along the line: of the kind of the line's segments or, without one, of
@@ -44,8 +39,9 @@ impl MatchContext<'_> {
     /// front of a line on the ground is one edge.
     fn belongs_to_another(&self, edge: &GuidedEdge, taken: IsTaken) -> bool {
         let view = edge.view;
+        let linker = LineLinker::measured_edge();
         let near =
-            (self.prepared.views[view.index()].index).near_segment(&edge.segment, SAME_EDGE_PX);
+            (self.prepared.views[view.index()].index).near_segment(&edge.segment, linker.apart);
         let others: Vec<&SegmentGeometry> = (near.into_iter())
             .map(|id| SegmentRef {
                 view,
@@ -57,7 +53,7 @@ impl MatchContext<'_> {
             .collect();
         let on_another = |piece: &&Segment2| {
             let middle = piece.at(0.5);
-            others.iter().any(|s| passes(&s.segment, &middle))
+            (others.iter()).any(|s| linker.passes(&s.segment.ends(), &middle))
         };
         2 * edge.pieces.iter().filter(on_another).count() > edge.pieces.len()
     }
@@ -157,19 +153,16 @@ impl MatchContext<'_> {
         );
         let stretch = Segment2::new(from, to);
         let index = &self.prepared.views[view.index()].index;
-        let ahead = |p: Point2<f64>| (p - from).dot(&image.direction);
-        let near = index.near_segment(&stretch, reach * self.params.gate_px);
+        let linker = LineLinker::predicted_image(reach * self.params.gate_px);
+        let near = index.near_segment(&stretch, linker.apart);
         let on_line = near.into_iter().filter_map(|id| {
             let name = SegmentRef {
                 view,
                 segment: SegmentId(id),
             };
             let geometry = self.prepared.get(name)?;
-            let (s0, s1) = (ahead(geometry.segment.p0), ahead(geometry.segment.p1));
             (self.compatibility.allows(geometry.kind, kind)
-                && s0.max(s1) >= 0.0
-                && s0.min(s1) <= stretch.length()
-                && self.lies_on(&image, geometry, reach)
+                && linker.connects(&stretch.ends(), &geometry.segment.ends())
                 && !taken(name))
             .then_some((
                 name,
@@ -201,20 +194,6 @@ impl MatchContext<'_> {
         let image = ProjectedLine::new(self.scene.camera(view), line)?;
         Some((image, Segment2::new(image.at(from)?, image.at(to)?)))
     }
-
-    fn lies_on(&self, image: &ProjectedLine, geometry: &SegmentGeometry, reach: f64) -> bool {
-        let along = geometry.segment.direction().dot(&image.direction);
-        let near = |p| image.distance(p).abs() <= reach * self.params.gate_px;
-        along.abs() > 0.9 && near(&geometry.segment.p0) && near(&geometry.segment.p1)
-    }
-}
-
-/// Does a segment pass by a point within [`SAME_EDGE_PX`], between its ends?
-fn passes(segment: &Segment2, point: &Point2<f64>) -> bool {
-    let to_point = point - segment.p0;
-    let along = to_point.dot(&segment.direction());
-    (0.0..=segment.length()).contains(&along)
-        && to_point.dot(&segment.normal()).abs() <= SAME_EDGE_PX
 }
 
 #[cfg(test)]

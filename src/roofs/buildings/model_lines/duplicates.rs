@@ -8,14 +8,9 @@
 use std::cmp::Ordering;
 
 use crate::base::ids::LineId;
-use crate::lines::lines2d::GuidedEdge;
-use crate::lines::lines3d::{Line3d, ProjectedLine, ReprojectionGate};
+use crate::base::line_linker::LineLinker;
+use crate::lines::lines3d::{Line3d, reprojects_onto};
 use crate::orienting::scene::Scene;
-
-/// Least share of a line along which a better one runs.
-const COVERED: f64 = 0.9;
-/// Cosine of the largest angle between two lines that are compared, 10 degrees.
-const PARALLEL: f64 = 0.984_807_753_012_208;
 
 /// The standing lines that duplicate better ones. Edges within `gate_px` and three standard
 /// deviations of a line's image are on it.
@@ -28,9 +23,9 @@ pub(super) fn duplicate_lines(scene: &Scene, lines: &[Line3d], gate_px: f64) -> 
     let mut duplicates = Vec::new();
     for (id, line) in best_first {
         let is_duplicate_of = |better: &&Line3d| {
-            runs_along(better, line)
-                && reprojects_onto(scene, better, line, gate_px)
-                && reprojects_onto(scene, line, better, gate_px)
+            LineLinker::duplicate().connects(&better.segment.ends(), &line.segment.ends())
+                && reprojects(scene, better, line, gate_px)
+                && reprojects(scene, line, better, gate_px)
         };
         if kept.iter().any(is_duplicate_of) {
             duplicates.push(id);
@@ -48,28 +43,11 @@ fn by_views_then_sigma(a: &Line3d, b: &Line3d) -> Ordering {
     views.then(a.sigma_m.total_cmp(&b.sigma_m))
 }
 
-/// Does a line run along most of another, parallel to it?
-fn runs_along(line: &Line3d, part: &Line3d) -> bool {
-    let (line, part) = (&line.segment, &part.segment);
-    line.covers(part, COVERED) && line.direction().dot(&part.direction()).abs() >= PARALLEL
-}
-
-/// Does the image of a line lie on the edges of another, in two of three views that show one?
-fn reprojects_onto(scene: &Scene, line: &Line3d, onto: &Line3d, gate_px: f64) -> bool {
-    let gate = ReprojectionGate {
-        width_px: gate_px,
-        max_sigma_px: f64::INFINITY,
-    };
+/// Does the image of a line lie on the edges of another?
+fn reprojects(scene: &Scene, line: &Line3d, onto: &Line3d, gate_px: f64) -> bool {
     let nearer_end = |t: f64| line.covariance[usize::from(t > 0.5 * line.segment.length())];
-    let on_edge = |edge: &GuidedEdge| {
-        let image = ProjectedLine::new(scene.camera(edge.view), &line.segment);
-        image.is_some_and(|image| image.contains(&edge.segment, gate, nearer_end))
-    };
-    let edges = onto.supports.iter().filter_map(|s| s.edge.as_ref());
-    let (on, all) = edges.fold((0, 0), |(on, all), edge| {
-        (on + usize::from(on_edge(edge)), all + 1)
-    });
-    3 * on >= 2 * all
+    let linker = LineLinker::reprojected_duplicate(gate_px);
+    reprojects_onto(scene, (&line.segment, nearer_end), &onto.supports, &linker)
 }
 
 #[cfg(test)]
@@ -77,7 +55,7 @@ mod tests {
     use super::*;
     use crate::base::geometry::{Segment2, Segment3};
     use crate::base::ids::ViewId;
-    use crate::lines::lines2d::SegmentKind;
+    use crate::lines::lines2d::{GuidedEdge, SegmentKind};
     use crate::lines::lines3d::planted;
     use crate::lines::lines3d::{LineContradiction, LineSupport, SupportKind};
     use crate::roofs::testing;

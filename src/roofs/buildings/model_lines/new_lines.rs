@@ -15,6 +15,7 @@ use nalgebra::{Matrix3, Point3};
 use super::model_edges::{ModelEdge, model_edges};
 use crate::base::geometry::{Segment2, Segment3};
 use crate::base::ids::{FacetId, LineId, ViewId};
+use crate::base::line_linker::LineLinker;
 use crate::base::math::larger;
 use crate::base::params::{Lines3dParams, MatchParams};
 use crate::lines::lines2d::{GuidedEdge, SegmentKind, measure_edge};
@@ -30,12 +31,6 @@ use crate::roofs::model::{Facet, Occluders, RoofModel};
 /// were no edges, of those that more showed 2 of 212.
 const MIN_VIEWS: usize = 3;
 const MIN_VIEW_SHARE: [usize; 2] = [2, 3];
-/// A matched line explains an edge from which it is no farther, ground pixels.
-const EXPLAINED_PX: f64 = 2.5;
-/// ... to which it is parallel: cosine of 3 degrees.
-const PARALLEL: f64 = 0.998_629_534_754_573_9;
-/// A measured line farther from the edge of the model is another one, ground pixels.
-const SAME_EDGE_PX: f64 = 2.5;
 
 /// The edges of the model, or the parts of them, that no line explains: measured again in all
 /// views, and intersections of planes also without.
@@ -127,19 +122,16 @@ impl NewLineSearch<'_> {
     /// The parts of an edge, not shorter than a match must be, along which no standing line runs.
     fn unexplained(&self, edge: &Segment3, pixel_m: f64) -> Vec<Segment3> {
         let least = self.matching.min_edgels as f64 * pixel_m;
-        let beside: Vec<&Segment3> = Line3d::standing(self.lines)
-            .map(|(_, line)| &line.segment)
-            .filter(|l| l.direction().dot(&edge.direction()).abs() >= PARALLEL)
+        let (linker, direction) = (LineLinker::explained_edge(pixel_m), edge.direction());
+        let beside: Vec<[Point3<f64>; 2]> = Line3d::standing(self.lines)
+            .map(|(_, line)| line.segment.ends())
+            .filter(|[p, q]| linker.angle(&direction, &(q - p)) >= 0.0)
             .collect();
         let samples = (edge.length() / pixel_m).ceil().clamp(1.0, 4096.0) as usize;
         let at = |i: usize| i as f64 / samples as f64;
         let free: Vec<bool> = (0..samples)
             .map(|i| edge.at(at(i) + 0.5 * at(1)))
-            .map(|p| {
-                beside
-                    .iter()
-                    .all(|l| distance(l, &p) > EXPLAINED_PX * pixel_m)
-            })
+            .map(|p| !beside.iter().any(|line| linker.passes(line, &p)))
             .collect();
         let mut parts = Vec::new();
         let mut start = 0;
@@ -220,9 +212,9 @@ impl NewLineSearch<'_> {
             edges.remove(worst);
         };
         let sigma_m = fit.sigma_at(0.0).max(fit.sigma_at(1.0));
-        let moved = distance(&fit.line, &part.p0).max(distance(&fit.line, &part.p1));
-        let is_same_edge =
-            moved <= SAME_EDGE_PX * pixel_m && sigma_m <= self.fitting.max_sigma_px * pixel_m;
+        let (linker, line) = (LineLinker::explained_edge(pixel_m), fit.line.ends());
+        let is_same_edge = part.ends().iter().all(|p| linker.passes(&line, p))
+            && sigma_m <= self.fitting.max_sigma_px * pixel_m;
         is_same_edge.then(|| self.line(&fit, part, sigma_m, &edges))
     }
 
@@ -312,13 +304,6 @@ impl NewLineSearch<'_> {
     }
 }
 
-/// Distance of a point from the stretch, metres.
-fn distance(stretch: &Segment3, p: &Point3<f64>) -> f64 {
-    let t = (p - stretch.p0).dot(&stretch.direction());
-    let t = t.clamp(0.0, stretch.length());
-    (p - (stretch.p0 + stretch.direction() * t)).norm()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -371,7 +356,7 @@ mod tests {
         for edge in &truth.edges {
             let on_edge = |l: &&Line3d| {
                 let ends = [l.segment.p0, l.segment.p1];
-                ends.iter().all(|p| distance(edge, p) < 0.1)
+                ends.iter().all(|p| edge.line_distance(p) < 0.1)
                     && l.segment.length() > 0.8 * edge.length()
             };
             assert_eq!(lines.iter().filter(on_edge).count(), 1, "{edge:?}");
@@ -485,7 +470,7 @@ mod tests {
         assert_eq!(lines.len(), truth.edges.len());
         for line in &lines {
             let ends = [line.segment.p0, line.segment.p1];
-            let is_near = |e: &Segment3| ends.iter().all(|p| distance(e, p) < 0.1);
+            let is_near = |e: &Segment3| ends.iter().all(|p| e.line_distance(p) < 0.1);
             assert!(truth.edges.iter().any(is_near), "{:?}", line.segment);
             assert!(line.supports.len() >= MIN_VIEWS && line.sigma_m < 0.05);
         }

@@ -38,15 +38,14 @@ impl Border {
         (self.b - self.a).norm()
     }
 
+    /// Both ends.
+    pub(super) fn ends(&self) -> [Point2<f64>; 2] {
+        [self.a, self.b]
+    }
+
     /// Unit direction from a to b.
     pub(super) fn direction(&self) -> Vector2<f64> {
         (self.b - self.a) / self.length().max(1e-12)
-    }
-
-    /// Distance of a plan position from the infinite line, metres.
-    pub(super) fn distance(&self, p: &Point2<f64>) -> f64 {
-        let d = self.direction();
-        (d.x * (p.y - self.a.y) - d.y * (p.x - self.a.x)).abs()
     }
 
     /// The position on the infinite line that is nearest to a plan position.

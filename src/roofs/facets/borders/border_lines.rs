@@ -19,6 +19,7 @@ use nalgebra::{Point2, Vector2};
 use super::border::{Border, BorderKind};
 use super::extent::extent_lines;
 use crate::base::geometry::Segment3;
+use crate::base::line_linker::LineLinker;
 use crate::base::params::RoofParams;
 use crate::base::plan_index::PlanIndex;
 use crate::lines::lines3d::ThetaFrame;
@@ -27,9 +28,8 @@ use crate::planes::hypotheses::PlaneHypothesis;
 use crate::planes::photoconsistency::ShiftableWindows;
 use crate::roofs::facets::point_cloud::CloudEvidence;
 
-/// A line within this distance of an intersection, metres, and this angle is the same line.
-const SAME_LINE: f64 = 0.3;
-const SAME_LINE_SINE: f64 = 0.09;
+/// When two borders are one, and a real line is an intersection.
+const SAME: LineLinker = LineLinker::border();
 
 /// All border lines of the scene, intersections first, none lying on another.
 pub(crate) fn border_lines(
@@ -207,8 +207,8 @@ fn outermost_lines(
             };
             let (a, d) = (border.a, border.direction());
             let beside = |p: &Point2<f64>| d.x * (p.y - a.y) - d.y * (p.x - a.x);
-            let outermost = ends.iter().all(|p| beside(p) < SAME_LINE)
-                || ends.iter().all(|p| beside(p) > -SAME_LINE);
+            let outermost = ends.iter().all(|p| beside(p) < SAME.apart)
+                || ends.iter().all(|p| beside(p) > -SAME.apart);
             if !outermost {
                 continue;
             }
@@ -296,30 +296,25 @@ impl DistinctBorders {
     /// Adds a border unless it lies on one that is there; one that runs along another is moved onto
     /// its line.
     fn add(&mut self, mut border: Border) {
-        let mut near: Vec<u32> = (self.index.touching([border.a, border.b], SAME_LINE)).collect();
+        let lies_on = LineLinker {
+            beyond: SAME.apart,
+            ..SAME
+        };
+        let mut near: Vec<u32> = (self.index.touching(border.ends(), SAME.apart)).collect();
         near.sort();
         for other in near.into_iter().map(|i| &self.borders[i as usize]) {
-            let sine = border.direction().perp(&other.direction()).abs();
-            if sine > SAME_LINE_SINE
-                || other.distance(&border.a) > SAME_LINE
-                || other.distance(&border.b) > SAME_LINE
-            {
+            let line = other.ends();
+            if !SAME.connects(&line, &border.ends()) {
                 continue;
             }
-            let d = other.direction();
-            let (s, t) = ((border.a - other.a).dot(&d), (border.b - other.a).dot(&d));
-            let (s, t) = (s.min(t), s.max(t));
-            if t < 0.0 || s > other.length() {
-                continue;
-            }
-            if s >= -SAME_LINE && t <= other.length() + SAME_LINE {
+            if border.ends().iter().all(|p| lies_on.passes(&line, p)) {
                 return;
             }
             border.a = other.foot(&border.a);
             border.b = other.foot(&border.b);
         }
         let number = self.borders.len() as u32;
-        self.index.insert([border.a, border.b], number);
+        self.index.insert(border.ends(), number);
         self.borders.push(border);
     }
 }

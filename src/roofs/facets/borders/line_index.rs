@@ -3,6 +3,7 @@
 use nalgebra::{Point2, Vector2};
 
 use crate::base::geometry::Segment3;
+use crate::base::line_linker::LineLinker;
 use crate::base::plan_index::PlanIndex;
 
 /// 3D lines by plan position.
@@ -12,9 +13,10 @@ pub(crate) struct LineIndex {
     index: PlanIndex,
 }
 
-/// A border lies on a line within this distance in plan, metres, and this sine of the angle.
-pub(super) const BESIDE_LINE: f64 = 0.25;
-const LINE_SINE: f64 = 0.12;
+/// When a border lies on a line.
+const ON_LINE: LineLinker = LineLinker::border_on_line();
+/// Largest distance in plan at which it does, metres.
+pub(super) const BESIDE_LINE: f64 = ON_LINE.apart;
 
 impl LineIndex {
     /// Indexes the lines.
@@ -41,7 +43,7 @@ impl LineIndex {
         let direction = *direction;
         lines.map(|i| &self.lines[i as usize]).filter(move |line| {
             let along = line.p1.xy() - line.p0.xy();
-            along.norm() > 1e-9 && along.perp(&direction).abs() < LINE_SINE * along.norm()
+            along.norm() > 1e-9 && ON_LINE.angle(&direction, &along) >= 0.0
         })
     }
 }
@@ -57,9 +59,9 @@ fn heights_at<'l>(place: &Point2<f64>, lines: impl Iterator<Item = &'l Segment3>
 fn height_at(place: &Point2<f64>, line: &Segment3) -> Option<f64> {
     let along = line.p1.xy() - line.p0.xy();
     let length = along.norm();
-    let (u, r) = (along / length, place - line.p0.xy());
-    let t = r.dot(&u) / length;
-    let slack = BESIDE_LINE / length;
-    ((-slack..=1.0 + slack).contains(&t) && u.perp(&r).abs() < BESIDE_LINE)
+    let t = (place - line.p0.xy()).dot(&(along / length)) / length;
+    let in_plan = line.ends().map(|p| p.xy());
+    ON_LINE
+        .passes(&in_plan, place)
         .then(|| line.at(t.clamp(0.0, 1.0)).z)
 }

@@ -1,42 +1,21 @@
 //! Each footprint compared with the roofs of the model.
 
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::{MOST_SHIFT_M, RegisterEvidence};
 use crate::base::math::larger;
-use crate::orienting::known::Footprint;
+use crate::orienting::known::{Footprint, KnownComparison, KnownShift, KnownThing, KnownVerdict};
 use crate::roofs::model::Facet;
 
 /// What became of a register.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct RegisterTrace {
-    /// Its file.
-    pub file: String,
-    /// What was done with it.
-    pub verdict: RegisterVerdict,
-    /// Probability that it belongs to this place, 0 to 1.
-    pub belongs: f64,
-    /// By so much it was moved as a whole before it was used, east and north, metres.
-    pub moved_m: [f64; 2],
+    /// As a whole.
+    pub compared: KnownComparison,
     /// Its footprints in the window, in the order of the file.
     pub footprints: Vec<FootprintFinding>,
-}
-
-/// What was done with a register.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-#[serde(rename_all = "kebab-case")]
-pub enum RegisterVerdict {
-    /// It counted as it is.
-    #[default]
-    Used,
-    /// It was moved as a whole, to the roofs, and counted.
-    Moved,
-    /// The images contradict it as a whole, so it counted for little.
-    Doubted,
-    /// None of its footprints lies in the scene.
-    Elsewhere,
 }
 
 /// A footprint compared with the model.
@@ -76,30 +55,15 @@ pub enum FootprintVerdict {
 impl RegisterTrace {
     /// What the user should know: what the images contradict.
     pub fn warnings(&self) -> Vec<String> {
-        let file = &self.file;
+        let file = &self.compared.file;
         let named = |verdict: FootprintVerdict| -> Vec<&str> {
             let of_it = self.footprints.iter().filter(|f| f.verdict == verdict);
             of_it.map(|f| &*f.name).collect()
         };
-        let mut warnings = Vec::new();
-        if self.verdict == RegisterVerdict::Elsewhere {
-            warnings.push(format!(
-                "none of the footprints of {file} lies in the scene: check its coordinate system"
-            ));
+        let as_a_whole = self.compared.warning(KnownThing::Footprints);
+        let mut warnings: Vec<String> = as_a_whole.into_iter().collect();
+        if self.compared.verdict == KnownVerdict::Contradicted {
             return warnings;
-        }
-        if self.verdict == RegisterVerdict::Doubted {
-            warnings.push(format!(
-                "the images contradict {file} as a whole, so it counted for little: check that it is \
-                 of this place"
-            ));
-            return warnings;
-        }
-        if self.verdict == RegisterVerdict::Moved {
-            let [x, y] = self.moved_m;
-            warnings.push(format!(
-                "{file} was moved by {x:.2} m east and {y:.2} m north, to the roofs"
-            ));
         }
         for (verdict, what) in [
             (
@@ -129,8 +93,6 @@ impl RegisterTrace {
     }
 }
 
-/// A register that belongs here with less probability is doubted.
-const DOUBTFUL: f64 = 0.5;
 /// So many names stand in a warning; all are in `report.json`.
 const MOST_NAMED: usize = 5;
 
@@ -158,17 +120,19 @@ impl RegisterEvidence<'_> {
         let footprints: Vec<_> = (self.register.footprints.iter())
             .filter_map(found)
             .collect();
-        let verdict = match footprints.is_empty() {
-            true => RegisterVerdict::Elsewhere,
-            false if self.belongs < DOUBTFUL => RegisterVerdict::Doubted,
-            false if self.moved != [0, 0] => RegisterVerdict::Moved,
-            false => RegisterVerdict::Used,
+        let unused = KnownComparison::new(&self.register.file, self.register.accuracy_m);
+        let [x, y] = self.moved.map(|n| n as f64 * self.grid.step);
+        let shift = KnownShift {
+            by: Vector3::new(x, y, 0.0),
+            // It is the likeliest one against the accuracy already.
+            explained_m: [0.0; 2],
+        };
+        let compared = match footprints.is_empty() {
+            true => unused,
+            false => unused.judged(Some(shift), self.belongs),
         };
         RegisterTrace {
-            file: self.register.file.clone(),
-            verdict,
-            belongs: self.belongs,
-            moved_m: self.moved.map(|n| n as f64 * self.grid.step),
+            compared,
             footprints,
         }
     }

@@ -1,11 +1,5 @@
 /** What the images say of what is known beforehand, in words. */
-import type {
-  CloudComparison,
-  FootprintVerdict,
-  RegisterTrace,
-  TerrainComparison,
-  Vec2,
-} from "../../shared/records";
+import type { FootprintVerdict, KnownComparison, RegisterTrace } from "../../shared/records";
 import { percentText } from "./numberText";
 
 /** Of a single footprint. */
@@ -16,24 +10,49 @@ export const FOOTPRINT_WORDS: Record<FootprintVerdict, string> = {
   "nothing-found": "nothing found: the images show neither a roof nor ground",
 };
 
-/** Of a register as a whole. */
-export function registerWords({ verdict, belongs, moved_m }: RegisterTrace): string {
-  const probability = `probability ${percentText(belongs)}`;
+/** What can be known beforehand. */
+export type KnownThing = "terrain" | "footprints" | "cloud";
+
+const USES: Record<KnownThing, string> = {
+  terrain: "it gives the ground",
+  footprints: "it counted as evidence for roofs",
+  cloud: "its points on roofs proposed planes and counted as evidence",
+};
+
+const CONTRADICTED: Record<KnownThing, string> = {
+  terrain: "It follows the roofs, so it is a surface model, and was not used. Give a terrain model.",
+  footprints:
+    "The images contradict it as a whole, so it counted for little. Is it of another place, or in another coordinate system?",
+  cloud:
+    "The images contradict it as a whole, so its points on roofs were left out. Is it of another place, or in another coordinate system?",
+};
+
+/** Of a thing as a whole. */
+export function knownWords(thing: KnownThing, { verdict, belongs, shift_m }: KnownComparison): string {
+  const uses = USES[thing];
+  // Heights that are confirmed belong to any place that has them.
+  const probability = thing === "terrain" ? "" : ` (probability ${percentText(belongs)})`;
   switch (verdict) {
     case "used":
-      return `It belongs to this place (${probability}), and counted as evidence for roofs.`;
+      return `The images confirm it${probability}: ${uses}.`;
     case "moved":
-      return `It belongs to this place (${probability}), but is displaced as a whole: it was moved by ${shiftWords(moved_m)} to the roofs, and counted as evidence for them.`;
-    case "doubted":
-      return `The images contradict it as a whole (${probability} that it is of this place), so it counted for little. Is it of another place, or in another coordinate system?`;
+      return `The images confirm it${probability}, but it is displaced as a whole: it was moved by ${shiftWords(shift_m ?? [])} to what they show, and ${uses}.`;
+    case "unchecked":
+      return `The images show too little to check it: ${uses} as it is.`;
+    case "contradicted":
+      return CONTRADICTED[thing];
     case "elsewhere":
-      return "None of its footprints lies in the scene, so it was not used. Is it of another place, or in another coordinate system?";
+      return "Hardly anything of it lies in the scene, so it was not used. Is it in another coordinate system?";
   }
 }
 
-/** "1.20 m west and 0.90 m north"; "nothing" where it is less than a centimetre. */
-export function shiftWords([east, north]: Vec2): string {
-  const parts = [lengthWords(east, "east", "west"), lengthWords(north, "north", "south")];
+/** "1.20 m west and 0.90 m north", "46.03 m up"; "nothing" where it is less than a centimetre. */
+export function shiftWords([east = 0, north = 0, up = 0]: readonly number[]): string {
+  const parts = [
+    lengthWords(east, "east", "west"),
+    lengthWords(north, "north", "south"),
+    lengthWords(up, "up", "down"),
+  ];
   return parts.filter((part) => part !== "").join(" and ") || "nothing";
 }
 
@@ -69,44 +88,4 @@ function rangeText(lengths: readonly number[]): string {
   }
   const [least, most] = [Math.min(...lengths).toFixed(1), Math.max(...lengths).toFixed(1)];
   return least === most ? `${least} m` : `${least} to ${most} m`;
-}
-
-/** Of a terrain model. */
-export function terrainWords({ verdict, images_above_m }: TerrainComparison): string {
-  const above = images_above_m ?? 0;
-  const size = Math.abs(above).toFixed(2);
-  const side = above < 0 ? "below" : "above";
-  switch (verdict) {
-    case "confirmed":
-      return `It gives the ground. The images confirm it: their ground lies ${size} m ${side} it.`;
-    case "unchecked":
-      return "It gives the ground. The images show too little of the ground to check it.";
-    case "moved":
-      return `It gives the ground, with a difference of datums taken out: the ground in the images lies ${size} m ${side} it.`;
-    case "surface":
-      return "Not used: it follows the roofs, so it is a surface model. Give a terrain model.";
-    case "elsewhere":
-      return "Not used: it covers less than half of the place. Is it in another coordinate system?";
-  }
-}
-
-/** Of a point cloud. */
-export function cloudWords({ verdict, belongs, moved_m: [east, north, up] }: CloudComparison): string {
-  const probability = `probability ${percentText(belongs)}`;
-  const used = "its points on roofs proposed planes and counted as evidence";
-  switch (verdict) {
-    case "used":
-      return `It belongs to this place (${probability}): ${used}.`;
-    case "moved": {
-      const inPlan = shiftWords([east, north]);
-      const parts = [inPlan === "nothing" ? "" : inPlan, lengthWords(up, "up", "down")];
-      return `It belongs to this place (${probability}), but is displaced as a whole: it was moved by ${parts.filter((part) => part !== "").join(" and ")} to what the images show, and ${used}.`;
-    }
-    case "unchecked":
-      return `The images show too little to check it: ${used} as they are.`;
-    case "left-out":
-      return `The images contradict it as a whole (${probability} that it is of this place), so its points on roofs were left out. Is it of another place, or in another coordinate system?`;
-    case "elsewhere":
-      return "Hardly any of its points lie in the scene. Is it in another coordinate system?";
-  }
 }

@@ -3,7 +3,7 @@ import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
 import type { ParamTree, ParamValue } from "../../shared/paramTree";
 import type { Method, StageName } from "../../shared/stages";
-import { firstStageOf, mainTabOf, stagesOf, stageWords } from "../../stages/catalogue";
+import { firstStageOf, mainTabOf, shownTabOf, stagesOf, stageWords } from "../../stages/catalogue";
 import { fetchResults } from "../../stages/list";
 import { saveFile } from "../parts/saveFile";
 import { withParam } from "../settings/parameterForm";
@@ -170,8 +170,9 @@ async function runStage(name: StageName, position: number, taken: ParamTree): Pr
       setExportNames(names);
       select(null);
       // A preliminary model is looked at until its own facets take its place.
-      if (preliminaryFacets.value === null || tab.value !== "model") {
-        showTab(mainTabOf(name));
+      const shown = shownTabOf(name, method.value);
+      if (shown !== null && (preliminaryFacets.value === null || tab.value !== "model")) {
+        showTab(shown);
       }
       updateStage(name, { ...summary, status: "done", fraction: 1, seconds });
       endStage(position);

@@ -1,16 +1,9 @@
 /** A set of coplanar lines and its polygon (B99 2). */
-import { counted } from "../../app/parts/counted";
-import { type CoplanarRelationKind, coplanarSetsOf } from "../../shared/records";
+import { coplanarSetsOf } from "../../shared/records";
 import { slopeSigma } from "../../shared/surfaceClass";
 import type { Kind } from "../parts/kind";
 import { degreesText, groupsAndFacets, links, numbered, slopeText } from "../parts/rows";
 import { areas } from "../parts/shapes";
-
-const RELATION_WORDS: Record<CoplanarRelationKind, string> = {
-  square: "square corner",
-  level: "level side",
-  symmetric: "slope as across the ridge",
-};
 
 export default {
   tabs: ["coplanar"],
@@ -22,12 +15,10 @@ export default {
       return [];
     }
     const nats = set.inside_nats + set.outline_nats;
-    const [before, after] = trace.reprojection_px;
     const closing = trace.closing.map((one) => ({
       name: one.kind === "square" ? "side made square" : "side mirrored",
       nats: one.nats,
     }));
-    const relations = trace.relations.map((one) => ({ name: RELATION_WORDS[one.kind], nats: one.nats }));
     return [
       ["Verified", nats > 0 ? "yes" : "no", `${nats.toFixed(1)} nats for it`],
       links("3D lines", "line", set.lines),
@@ -42,13 +33,7 @@ export default {
         },
       ],
       ["Slope", `${slopeText(set.plane.normal)} ± ${degreesText(slopeSigma(set))}`],
-      [
-        "Reprojection error",
-        `${before.toFixed(2)} px, then ${after.toFixed(2)} px`,
-        counted(trace.edges, "image edges"),
-      ],
       closing.length > 0 && ["Sides without a line (nats)", { bars: closing }],
-      relations.length > 0 && ["Relations (nats)", { bars: relations }],
       ...groupsAndFacets(results, (one) => coplanarSetsOf(one).includes(index)),
     ];
   },

@@ -7,9 +7,9 @@ import { CoplanarLab } from "./CoplanarLab";
 export default {
   title: "Coplanar sets",
   source: "B99 2 (Leuven; Moons et al. 1998), 5",
-  text: "Lines in one plane are a face of the roof before anything is compared on it. Neighbouring lines are grouped where their ends, as uncertain as they are, more likely lie in one plane than not; the convex hull of the ends is the first polygon. A side without a line may be square to its neighbours or mirror the one across: such a relation c, measured with a variance s², is likelier true than not where its nats are positive; w is the range that c could have, P the share of true roofs on which it holds. Then the image edges of all views move plane and corners until the reprojection error is least, and the views verify what is inside.",
-  equation: ["ln ( w φ ( c ; s ^2 ) ) + ln frac { P } { 1 - P } > 0"],
-  hint: "Pick a polygon: its hull, its lines and its place in every photograph appear, and the inspector weighs each relation.",
+  text: "Lines in one plane are a face of the roof before anything is compared on it. Neighbouring lines are grouped where their ends, as uncertain as they are, more likely lie in one plane than not; the convex hull of the ends is the first polygon. A side without a line may be square to its neighbours, as the share P of the corners of true roofs is, or mirror the one across: c is how far an end is from that, φ the density of the ends' errors, w the length of its side. Then the views verify what is inside.",
+  equation: ["ln ( w φ ( c ) ) + ln frac { P } { 1 - P } > 0"],
+  hint: "Pick a polygon: its hull, its lines and its place in every photograph appear, and the inspector weighs each side.",
 
   rows: ({ results: { coplanar } }) =>
     (coplanar?.sets ?? []).flatMap((set, index) =>

@@ -16,7 +16,7 @@ export default [
       const found = pickedSet();
       return found === null
         ? ""
-        : `${counted(found.lines, "lines")} lie in one plane. Its corners moved until the image edges were off by ${found.after.toFixed(2)} px instead of ${found.before.toFixed(2)} px (RMS).`;
+        : `${counted(found.lines, "lines")} lie in one plane. ${counted(found.moved, "sides")} without a line close their polygon, by right angles or symmetry.`;
     },
     hint: () => {
       const found = pickedSet();
@@ -43,9 +43,6 @@ interface CoplanarSetParts {
   lines: number;
   /** Sides without a line that were made square or mirrored. */
   moved: number;
-  /** Reprojection error of the wireframe before and after its adjustment, px. */
-  before: number;
-  after: number;
   /** The facets that it proposed. */
   facets: number[];
 }
@@ -59,12 +56,9 @@ export function coplanarSetParts(
   if (set === undefined || trace === undefined) {
     return null;
   }
-  const [before, after] = trace.reprojection_px;
   return {
     lines: set.lines.length,
     moved: trace.closing.length,
-    before,
-    after,
     facets: (facets ?? []).flatMap((facet, i) => (coplanarSetsOf(facet).includes(index) ? [i] : [])),
   };
 }

@@ -42,12 +42,6 @@ const set = (of: Partial<CoplanarSet>): CoplanarSet => ({
 });
 const trace = (closing: CoplanarSets["trace"]["sets"][number]["closing"]) => ({
   closing,
-  relations: [
-    { kind: "square" as const, at: [0, 0, 5] as [number, number, number], nats: 2.5 },
-    { kind: "symmetric" as const, at: [2, 2, 5] as [number, number, number], nats: -3 },
-  ],
-  reprojection_px: [0.5, 0.2] as [number, number],
-  edges: 8,
 });
 /** The second is not verified; the third lies over the first, and says less. */
 const COPLANAR: CoplanarSets = {
@@ -101,15 +95,13 @@ const barsIn = (rows: readonly Row[], label: string) => {
 };
 
 describe("sets of coplanar lines", () => {
-  it("are told with their nats, their relations and what became of them", () => {
+  it("are told with their nats and what became of them", () => {
     show();
     expect(titleOf({ kind: "coplanar", index: 0 }, about(results.value))).toBe("Coplanar set 0");
     const rows = rowsOf({ kind: "coplanar", index: 0 }, about(results.value));
     expect(valueIn(rows, "Verified")).toBe("yes");
     expect(barsIn(rows, "For and against it (nats)")).toEqual([4, 30, -12]);
     expect(barsIn(rows, "Sides without a line (nats)")).toEqual([1.5]);
-    expect(barsIn(rows, "Relations (nats)")).toEqual([2.5, -3]);
-    expect(valueIn(rows, "Reprojection error")).toBe("0.50 px, then 0.20 px");
     const names = (label: string) => (valueIn(rows, label) as Related[]).map(({ name }) => name);
     expect(names("3D lines")).toEqual(["3", "4"]);
     expect(names("Facets")).toEqual(["0"]);
@@ -160,8 +152,6 @@ describe("sets of coplanar lines", () => {
     expect(coplanarSetParts({ coplanar: COPLANAR, facets: [FACET] }, 0)).toEqual({
       lines: 2,
       moved: 1,
-      before: 0.5,
-      after: 0.2,
       facets: [0],
     });
     expect(coplanarSetParts({ coplanar: COPLANAR, facets: [FACET] }, 1)?.moved).toBe(0);

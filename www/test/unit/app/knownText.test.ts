@@ -1,7 +1,7 @@
 /** What the images say of terrain and footprints, in words. */
 import { describe, expect, it } from "vitest";
-import { outcomesOf, registerWords, shiftWords, terrainWords } from "../../../src/app/parts/knownText";
-import type { FootprintFinding, RegisterTrace, TerrainComparison } from "../../../src/shared/records";
+import { knownWords, outcomesOf, shiftWords } from "../../../src/app/parts/knownText";
+import type { FootprintFinding, KnownComparison } from "../../../src/shared/records";
 
 const finding = (
   name: string,
@@ -18,32 +18,36 @@ const finding = (
   ...(shift_m !== undefined && { shift_m }),
 });
 
-const register = (change: Partial<RegisterTrace>): RegisterTrace => ({
+const compared = (change: Partial<KnownComparison>): KnownComparison => ({
   file: "houses.geojson",
+  accuracy_m: 0.5,
   verdict: "used",
   belongs: 0.97,
-  moved_m: [0, 0],
-  footprints: [],
+  shift_m: [0, 0, 0],
   ...change,
 });
 
-const terrain = (
-  verdict: TerrainComparison["verdict"],
-  images_above_m: number | null,
-): TerrainComparison => ({ file: "dtm.tif", accuracy_m: 0.3, verdict, images_above_m });
-
-describe("a register of footprints in words", () => {
-  it("belongs here, is displaced, is of another place, or lies elsewhere", () => {
-    expect(registerWords(register({}))).toMatch(/belongs to this place \(probability 97 %\)/);
-    expect(registerWords(register({ verdict: "moved", moved_m: [-1.2, 0.9] }))).toMatch(
+describe("what is known in words", () => {
+  it("is confirmed, displaced, of another place, or lies elsewhere", () => {
+    const words = (change: Partial<KnownComparison>) => knownWords("footprints", compared(change));
+    expect(words({})).toMatch(/confirm it \(probability 97 %\).*evidence/);
+    expect(words({ verdict: "moved", shift_m: [-1.2, 0.9, 0] })).toMatch(
       /displaced as a whole: it was moved by 1\.20 m west and 0\.90 m north/,
     );
-    expect(registerWords(register({ verdict: "doubted", belongs: 0.004 }))).toMatch(
-      /contradict it as a whole \(probability < 1 % that .*counted for little/,
-    );
-    expect(registerWords(register({ verdict: "elsewhere", belongs: 0 }))).toMatch(/was not used/);
+    expect(words({ verdict: "contradicted" })).toMatch(/contradict it as a whole.*counted for little/);
+    expect(words({ verdict: "elsewhere" })).toMatch(/was not used/);
   });
 
+  it("says of a terrain model whether it gives the ground", () => {
+    const words = (change: Partial<KnownComparison>) => knownWords("terrain", compared(change));
+    expect(words({})).toBe("The images confirm it: it gives the ground.");
+    expect(words({ verdict: "unchecked", shift_m: null })).toMatch(/too little.*gives the ground/);
+    expect(words({ verdict: "moved", shift_m: [0, 0, 46.03] })).toMatch(/46\.03 m up/);
+    expect(words({ verdict: "contradicted" })).toMatch(/surface model/);
+  });
+});
+
+describe("a register of footprints in words", () => {
   it("says a shift by the points of the compass", () => {
     expect(shiftWords([0.5, -2.25])).toBe("0.50 m east and 2.25 m south");
     expect(shiftWords([0, -0.25])).toBe("0.25 m south");
@@ -65,15 +69,5 @@ describe("a register of footprints in words", () => {
     ]);
     expect(outcomesOf({ footprints: footprints.slice(2, 3) })[0]?.range).toBe("1.0 m");
     expect(outcomesOf({ footprints: [] })).toEqual([]);
-  });
-});
-
-describe("a terrain model in words", () => {
-  it("says whether it gives the ground, and how the images compare", () => {
-    expect(terrainWords(terrain("confirmed", -0.12))).toMatch(/gives the ground.*0\.12 m below it/);
-    expect(terrainWords(terrain("unchecked", null))).toMatch(/too little of the ground/);
-    expect(terrainWords(terrain("moved", 46.03))).toMatch(/datums taken out.*46\.03 m above it/);
-    expect(terrainWords(terrain("surface", 0))).toMatch(/^Not used: .*surface model/);
-    expect(terrainWords(terrain("elsewhere", null))).toMatch(/^Not used: .*half of the place/);
   });
 });

@@ -1,9 +1,9 @@
 /** What the images say of the terrain model, the footprints and the point cloud that are known beforehand. */
-import type { CloudComparison, RegisterTrace, TerrainComparison } from "../../../shared/records";
+import type { CloudComparison, KnownComparison, RegisterTrace } from "../../../shared/records";
 import { STAGE_FACTS } from "../../../stages/list";
 import { Links } from "../../inspector/Inspector";
 import { counted } from "../../parts/counted";
-import { cloudWords, FOOTPRINT_WORDS, outcomesOf, registerWords, terrainWords } from "../../parts/knownText";
+import { FOOTPRINT_WORDS, knownWords, outcomesOf } from "../../parts/knownText";
 import { results } from "../../state/results";
 import { tab } from "../../state/viewState";
 
@@ -22,12 +22,12 @@ export function KnownFindings() {
   );
 }
 
-function Terrain({ found }: { found: TerrainComparison }) {
+function Terrain({ found }: { found: KnownComparison }) {
   return (
     <section class="panel" data-testid="known-terrain">
       <h2>Terrain</h2>
       <p class="muted">{found.file}</p>
-      <p>{terrainWords(found)}</p>
+      <p>{knownWords("terrain", found)}</p>
     </section>
   );
 }
@@ -37,9 +37,9 @@ function PointCloud({ found }: { found: CloudComparison }) {
     <section class="panel" data-testid="known-point-cloud">
       <h2>Point cloud</h2>
       <p class="muted">
-        {found.file}: {counted(found.planes.length, "planes")}
+        {found.compared.file}: {counted(found.planes.length, "planes")}
       </p>
-      <p>{cloudWords(found)}</p>
+      <p>{knownWords("cloud", found.compared)}</p>
     </section>
   );
 }
@@ -49,9 +49,9 @@ function Footprints({ found }: { found: RegisterTrace }) {
     <section class="panel" data-testid="known-footprints">
       <h2>Footprints</h2>
       <p class="muted">
-        {found.file}: {counted(found.footprints.length, "footprints")} in the scene
+        {found.compared.file}: {counted(found.footprints.length, "footprints")} in the scene
       </p>
-      <p>{registerWords(found)}</p>
+      <p>{knownWords("footprints", found.compared)}</p>
       <dl class="facts known-outcomes">
         {outcomesOf(found).map(({ verdict, indices, range }) => (
           <div key={verdict} class="broad" data-outcome={verdict}>

@@ -1,16 +1,18 @@
 /** The stages in order: run, cancel, progress, time and counts. */
 
 import "./stages.css";
-import { mainTabOf, stageWords } from "../../../stages/catalogue";
+import { shownTabOf, stageWords } from "../../../stages/catalogue";
 import { STAGE_FACTS } from "../../../stages/list";
 import { counted } from "../../parts/counted";
 import { KeepResult } from "../../results/comparison/Comparison";
 import { cancel } from "../../session/session";
 import { runAll, runTo } from "../../session/stageRuns";
 import { isBusy, phase } from "../../state/activity";
+import { method } from "../../state/parameters";
 import { files, hasPhotographsOnly } from "../../state/project";
 import { freshStages, type StageState, type StageStatus, stages } from "../../state/stages";
-import { showTab } from "../../state/viewState";
+
+import { showTab, tab } from "../../state/viewState";
 import { chooseWorkers, chosenWorkers, usefulWorkers } from "../../state/workers";
 
 const STATUS_WORDS: Record<StageStatus, string> = {
@@ -92,7 +94,7 @@ function StageCard({ stage, position }: { stage: StageState; position: number })
         class="link"
         title={words.section}
         onClick={() => {
-          showTab(mainTabOf(stage.name));
+          showTab(shownTabOf(stage.name, method.value) ?? tab.value);
         }}
       >
         {words.title}
