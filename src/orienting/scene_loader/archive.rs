@@ -40,9 +40,10 @@ pub fn unpack(file: InputFile) -> Result<Vec<InputFile>> {
     let mut left = MOST_BYTES;
     let mut files = Vec::new();
     for i in 0..archive.len() {
-        let unreadable = |e| refuse(format!("entry {i} cannot be read: {e}"));
-        let entry = archive.by_index(i).map_err(unreadable)?;
-        let name = entry.name().map_err(unreadable)?.into_owned();
+        let entry = archive
+            .by_index(i)
+            .map_err(|e| refuse(format!("entry {i} cannot be read: {e}")))?;
+        let name = entry.name().to_owned();
         let is_hidden = |part: &str| part.starts_with('.') || part == "__MACOSX";
         if entry.is_dir() || name.split(['/', '\\']).any(is_hidden) {
             continue;
