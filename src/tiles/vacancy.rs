@@ -29,8 +29,8 @@ use crate::planes::terrain::Ground;
 /// The stage after which it is asked: the last one that takes little time.
 pub(super) const ASKED_AFTER: Stage = Stage::HalfPlanes;
 
-/// May no building of a cell be found by the stages behind [`ASKED_AFTER`]? Never where a source has
-/// planes without matched lines.
+/// May no building of a cell be found by the stages behind [`ASKED_AFTER`]? Never where a source
+/// has planes without matched lines.
 pub(super) fn is_vacant(run: &Run, cell: &Cell) -> bool {
     let (scene, results) = (run.scene(), run.results());
     let [x, y] = [scene.origin.x, scene.origin.y];

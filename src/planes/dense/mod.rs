@@ -119,8 +119,8 @@ impl DenseTrace {
     }
 }
 
-/// Planes of the surfaces that the views agree on, and of a point cloud that is known, where it is a
-/// source of planes.
+/// Planes of the surfaces that the views agree on, and of a point cloud that is known, where it is
+/// a source of planes.
 pub fn dense_planes(
     scene: &Scene,
     lines: &[Line3d],

@@ -1,7 +1,7 @@
 //! From groups to the planes that compete for the plan.
 //!
 //! groups -> regions, border lines -> plan cells -> consistency of every plane over its region. All
-//! of it is kept for delineation, so that what only weighs it differently does not measure it again.
+//! of it is kept for delineation, so that what only weighs it differently measures nothing again.
 
 use std::sync::Arc;
 

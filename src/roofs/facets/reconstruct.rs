@@ -1,8 +1,9 @@
 //! From competing planes to facets and the closed buildings below them: the stage that orders B99
 //! 4.3.
 //!
-//! labelling -> outlines -> verification -> walls (figure 24). A facet that fails verification is rejected and the
-//! labelling continues without it, as the paper updates the neighbours of a plane that is removed.
+//! labelling -> outlines -> verification -> walls (figure 24). A facet that fails verification is
+//! rejected and the labelling continues without it, as the paper updates the neighbours of a plane
+//! that is removed.
 
 use std::collections::BTreeMap;
 
