@@ -288,3 +288,47 @@ impl ShiftSolution {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::photographs::camera::testing::crop_camera;
+
+    #[test]
+    fn the_view_that_is_shifted_is_freed_and_its_shift_found() {
+        let cameras = [
+            (-280.0, -200.0, 0.0),
+            (0.0, -190.0, 0.1),
+            (310.0, -200.0, 0.0),
+            (10.0, 190.0, 3.1),
+            (-290.0, 190.0, 3.0),
+        ]
+        .map(|(x, y, kappa)| crop_camera(x, y, kappa));
+        let planted = Vector2::new(0.6, -0.4);
+        let track = |i: u32| {
+            let [x, y, z] = [i % 7, i % 5, i % 3].map(f64::from);
+            let world = Point3::new(2.0 * x - 6.0, 3.0 * y - 6.0, 3.0 * z);
+            let seen = |(view, camera): (usize, &Camera)| {
+                let shift = if view == 2 { planted } else { Vector2::zeros() };
+                (view, camera.project(&world).unwrap() + shift)
+            };
+            cameras.iter().enumerate().map(seen).collect()
+        };
+        let adjustment = ShiftAdjustment {
+            tracks: (0..60).map(track).collect(),
+            cameras: &cameras,
+            scale: ResidualScale {
+                sigma_px: 0.2,
+                huber_px: 0.4,
+                gross_px: 3.0,
+            },
+        };
+        let found = adjustment.free_views();
+        for (view, shift) in found.shifts.iter().enumerate() {
+            let truth = if view == 2 { planted } else { Vector2::zeros() };
+            assert!((shift - truth).norm() < 0.01, "{view}: {shift}");
+        }
+        // Of sixty points, though each gives three of its coordinates to its place.
+        assert!(found.sigmas[2] > 0.2 / 60f64.sqrt() && found.sigmas[2] < 0.1);
+    }
+}

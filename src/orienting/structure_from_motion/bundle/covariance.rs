@@ -70,8 +70,8 @@ pub(in super::super) fn covariance(
     for (p, of_p) in free.iter().enumerate() {
         for (q, of_q) in free.iter().enumerate() {
             let factor = left[(p, q)];
-            for i in 0..n {
-                let scaled = factor * of_p[i];
+            for (i, own) in of_p.iter().enumerate() {
+                let scaled = factor * own;
                 if scaled != 0.0 {
                     for (value, other) in inverse.row_mut(i).iter_mut().zip(of_q) {
                         *value -= scaled * other;
