@@ -9,7 +9,7 @@ export type * from "../pkg/ridgeline.js";
 
 /** Was the side swept, and given up? Lines on the ground are not swept, nor what coplanar lines explain. */
 export function isRejected({ rejection }: SideRecord): boolean {
-  return rejection !== null && rejection !== "on_ground" && rejection !== "explained";
+  return rejection !== null && rejection !== "on_ground";
 }
 
 type Proposed = Pick<Facet | PlaneGroup, "proposals">;

@@ -13,7 +13,6 @@ import { percentText, signed } from "./numberText";
 /** Why a side of a line has no half-plane (B99 4.1). */
 export const REJECTION_WORDS: Record<string, string> = {
   on_ground: "the line lies on the ground",
-  explained: "coplanar lines explain it, so it is not swept",
   no_frame: "the line is vertical",
   too_short: "no view shows the whole line at sufficient length",
   no_points_of_interest: "too little texture beside the line",

@@ -20,7 +20,7 @@ export default {
       found.shift_m !== undefined && ["From it to the roof", shiftWords(found.shift_m)],
       ["Extent", `${(x1 - x0).toFixed(1)} × ${(y1 - y0).toFixed(1)} m`],
       ["Centre", `${((x0 + x1) / 2).toFixed(1)}, ${((y0 + y1) / 2).toFixed(1)} m`],
-      ["File", register.file],
+      ["File", register.compared.file],
     ];
   },
   siblings: (_, { results: { verification } }) =>

@@ -5,5 +5,4 @@ export const adjacency = {
   tabTitle: "Adjacency",
   nothing: { adjacency: null as AdjacencyGraphs | null },
   fetch: async (from) => ({ adjacency: await from.call("adjacency") }),
-  sections: { adjacency: "Adjacency graphs" },
 } satisfies Stage;

@@ -4,5 +4,4 @@ import type { Stage } from "../stage";
 export const coplanar = {
   nothing: { coplanar: null as CoplanarSets | null },
   fetch: async (from) => ({ coplanar: await from.call("coplanar") }),
-  sections: { coplanar: "Coplanar sets" },
 } satisfies Stage;

@@ -4,6 +4,6 @@ import type { Stage } from "../stage";
 export const dense = {
   nothing: { dense: null as DensePlanes | null },
   fetch: async (from) => ({ dense: await from.call("dense") }),
-  sections: { dense: "Dense planes", point_cloud: "Point cloud" },
+  sections: { point_cloud: "Point cloud" },
   known: ["cloud"],
 } satisfies Stage;

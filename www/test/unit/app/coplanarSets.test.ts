@@ -12,7 +12,6 @@ import {
   type Facet,
   type GroupingTrace,
   isMadeFrom,
-  isRejected,
 } from "../../../src/shared/records";
 import { tabsOf } from "../../../src/stages/catalogue";
 import { coplanarSetParts } from "../../../src/stages/coplanar/tour";
@@ -133,11 +132,6 @@ describe("sets of coplanar lines", () => {
     expect(coplanarSetsOf(FACET)).toEqual([0]);
     expect(isMadeFrom(FACET, { members: [], proposals: [{ coplanar_set: 0 }] })).toBe(true);
     expect(isMadeFrom(FACET, { members: [], proposals: [{ coplanar_set: 1 }] })).toBe(false);
-  });
-
-  it("need no sweep where they explain a side", () => {
-    expect(isRejected({ line: 0, side: "left", rejection: "explained" })).toBe(false);
-    expect(isRejected({ line: 0, side: "left", rejection: "low_peak" })).toBe(true);
   });
 
   it("have a tab and a legend", () => {
