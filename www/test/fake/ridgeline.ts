@@ -147,7 +147,7 @@ export class Session implements CoreSession {
       adjustment: { enabled: true },
       lines3d: {},
       sweep: { max_theta_deg: 75, min_similarity: 0.4, min_curvature: 4, min_amplitude: 0.2 },
-      sources: [],
+      sources: [] as unknown as ParamTree[string],
       roof: {},
       corrections: [] as unknown as ParamTree[string],
       texture: { max_atlas_px: 4096 },

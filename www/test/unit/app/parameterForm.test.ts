@@ -147,17 +147,17 @@ describe("firstStageOf", () => {
   const stages = stagesOf("lines");
 
   it("finds the stage that a group changes first", () => {
-    expect(firstStageOf("sweep", stages)).toBe(6);
-    expect(firstStageOf("dense", stages)).toBe(7);
-    expect(firstStageOf("texture", stages)).toBe(12);
+    expect(firstStageOf("sweep", stages)).toBe(5);
+    expect(firstStageOf("point_cloud", stages)).toBe(6);
+    expect(firstStageOf("texture", stages)).toBe(11);
     expect(firstStageOf("adjustment", stages)).toBe(stages.indexOf("matches"));
   });
 
   it("tells parameters of one group apart, and leaves the other method alone", () => {
     const rectangles = stagesOf("rectangles");
-    expect(firstStageOf("objectspace.planes.min_area_m2", rectangles)).toBe(3);
+    expect(firstStageOf("objectspace.planes.min_area_m2", rectangles)).toBe(4);
     expect(firstStageOf("objectspace.planes.min_height_m", rectangles)).toBe(1);
-    expect(firstStageOf("dense", rectangles)).toBe(rectangles.length);
+    expect(firstStageOf("point_cloud", rectangles)).toBe(rectangles.length);
     // Beside edges that are drawn by hand half-planes are swept with every method.
     expect(firstStageOf("sweep.min_similarity", rectangles)).toBe(rectangles.indexOf("corrections"));
   });

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { KINDS } from "../../../src/kinds/kinds";
 import { formatSelection, KIND_NAMES, parseSelection, type Selection } from "../../../src/shared/selection";
+import { METHODS } from "../../../src/shared/stages";
 import { tabsOf } from "../../../src/stages/catalogue";
 
 /** One of each kind, with the fields that its text names. */
@@ -96,6 +97,6 @@ describe("the kinds of things", () => {
 
   it("are gone through in the tabs, one kind in each", () => {
     const tabs = Object.values(KINDS).flatMap((kind) => kind.tabs ?? []);
-    expect([...tabs].sort()).toEqual([...tabsOf("combined")].sort());
+    expect([...tabs].sort()).toEqual([...new Set(METHODS.flatMap(tabsOf))].sort());
   });
 });
