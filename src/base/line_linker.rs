@@ -155,8 +155,8 @@ impl LineLinker {
         }
     }
 
-    /// An edge of the model along a line, metres: farther than two pixels and a half from it an edge
-    /// is another one.
+    /// An edge of the model along a line, metres: farther than two pixels and a half from it an
+    /// edge is another one.
     pub(crate) const fn explained_edge(pixel_m: f64) -> Self {
         Self {
             sine: SINE_3,

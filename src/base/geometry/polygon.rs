@@ -7,7 +7,7 @@
 //! of them.
 //!
 //! Booleans are i_overlay's, of one type in the whole crate, and the hull is spade's: every further
-//! type would be compiled anew (docs/decisions/0003).
+//! type would be compiled anew (docs/decisions/0003-one-instance-of-generic-code.md).
 
 use i_overlay::core::fill_rule::FillRule;
 pub(crate) use i_overlay::core::overlay_rule::OverlayRule;

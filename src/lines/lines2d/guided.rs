@@ -73,8 +73,8 @@ struct ProfilePiece {
 
 /// Measures the edge along `expected` (directed by contrast: bright on the side of its normal).
 /// The stretch `core`, px from the start, decides whether there is one; beyond it, pieces on the
-/// same edge are kept. With `reversed_contrast` the dark side is on the side of the normal. The image
-/// is that of the channel of the `kind`, with the standard deviation of the noise of a pixel.
+/// same edge are kept. With `reversed_contrast` the dark side is on the side of the normal. The
+/// image is that of the channel of the `kind`, with the standard deviation of the noise of a pixel.
 pub fn measure_edge(
     view: ViewId,
     (image, noise): (&Gray, f64),

@@ -108,7 +108,8 @@ fn sloped(plane: &Plane, slope: Vector2<f64>) -> Plane {
 
 /// Fits to places from several heights, and the level planes at these.
 fn planes_through(blocks: &[Point3<f64>]) -> Vec<Plane> {
-    // Assumption: a start at every tenth of the heights is near every plane, and ten fits lead there.
+    // Assumption: a start at every tenth of the heights is near every plane, and ten fits lead
+    // there.
     const STARTS: usize = 10;
     const ROUNDS: usize = 10;
     let near = |plane: &Plane| -> Vec<(Point3<f64>, f64)> {

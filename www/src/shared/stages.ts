@@ -73,7 +73,7 @@ export const STAGES = [
     title: "Coplanar sets",
     section: "B99 2, 5",
     methods: ["coplanar"],
-    reads: ["lines3d", "roof.border_nats_per_m"],
+    reads: ["roof.border_nats_per_m"],
   },
   {
     name: "adjacency",
