@@ -30,7 +30,7 @@ pub use judged::{
 };
 pub(crate) use uncertainty::{Inflation, UncertaintyTable};
 pub(crate) use walls::WallEvidence;
-pub(crate) use windows::{WindowEvidenceTable, WindowsOfWeight};
+pub(crate) use windows::WindowEvidenceTable;
 
 use std::sync::OnceLock;
 

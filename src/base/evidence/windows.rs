@@ -69,14 +69,6 @@ impl WindowEvidenceTable {
         }
     }
 
-    /// What windows of one texture weight (0 to 1) say at each correlation.
-    pub(crate) fn of_weight(&self, weight: f64) -> WindowsOfWeight<'_> {
-        let row = usize::from((weight * 255.0).round() as u8) * CORRELATIONS;
-        WindowsOfWeight {
-            nats: &self.nats[row..row + CORRELATIONS],
-        }
-    }
-
     /// [`Self::nats`] of a weight from 0 to 1 and a correlation from -1 to 1.
     pub(crate) fn nats_of(&self, weight: f32, correlation: f32) -> f64 {
         self.nats(
@@ -90,29 +82,6 @@ impl WindowEvidenceTable {
     pub(crate) fn nats(&self, weight: u8, correlation: i8) -> f64 {
         let column = usize::try_from(i32::from(correlation) + 127).unwrap_or(0);
         f64::from(self.nats[usize::from(weight) * CORRELATIONS + column])
-    }
-}
-
-/// A row of the table: windows of one texture weight.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct WindowsOfWeight<'a> {
-    nats: &'a [f32],
-}
-
-impl WindowsOfWeight<'_> {
-    /// What a window of this correlation (-1 to 1) says of the plane, nats: linear between the
-    /// steps of the table, so that it changes steadily with an angle.
-    pub(crate) fn nats(&self, correlation: f64) -> f64 {
-        let at = ((correlation + 1.0) * 127.0).clamp(0.0, (CORRELATIONS - 1) as f64);
-        let below = (at as usize).min(CORRELATIONS - 2);
-        let [a, b] = [below, below + 1].map(|k| f64::from(self.nats[k]));
-        a + (at - below as f64) * (b - a)
-    }
-
-    /// The correlation from which on a window speaks for the plane.
-    pub(crate) fn least_for(&self) -> f64 {
-        let against = self.nats.partition_point(|nats| *nats <= 0.0);
-        against as f64 / 127.0 - 1.0
     }
 }
 
@@ -139,36 +108,6 @@ mod tests {
         let strength = |weight: u8| table.nats(weight, 100) - table.nats(weight, 20);
         assert!(strength(246) > 2.0 * strength(100));
         assert_eq!(table.nats(0, 100), 0.0, "no texture");
-    }
-
-    #[test]
-    fn a_row_is_the_table_and_steady_between_its_steps() {
-        let table = WindowEvidenceTable::fitted();
-        for weight in [0u8, 60, 191, 254] {
-            let row = table.of_weight(f64::from(weight) / 255.0);
-            for step in [-100i8, -3, 0, 64, 127] {
-                let correlation = f64::from(step) / 127.0;
-                let (exact, near) = (table.nats(weight, step), row.nats(correlation));
-                assert!(
-                    (near - exact).abs() < 1e-6,
-                    "{weight} {step}: {near} {exact}"
-                );
-            }
-            let half = row.nats(64.5 / 127.0);
-            let ends = [64, 65].map(|step| table.nats(weight, step));
-            assert!((half - 0.5 * (ends[0] + ends[1])).abs() < 1e-6);
-        }
-        let least = |weight: f64| table.of_weight(weight).least_for();
-        let row = table.of_weight(0.985);
-        assert!(row.nats(least(0.985)) > 0.0 && row.nats(least(0.985) - 0.01) < 0.0);
-        assert!(
-            least(0.985) > least(0.8),
-            "more is expected of clear texture"
-        );
-        assert!(
-            least(0.0) > 1.0,
-            "without texture nothing speaks for a plane"
-        );
     }
 
     #[test]

@@ -3,10 +3,12 @@
 //! B99 5 asks for "a probabilistic framework" to "compute a posterior estimate for the plane angle
 //! and the likelihood that a plane is there"; this is ours.
 //!
-//! **One window.** What its correlation says of a plane follows from its texture: the fitted table
-//! of [`crate::base::evidence`], the same for every stage that compares windows. Nothing where the
-//! texture drowns in noise, and no more than two nats against the plane from one that does not lie
-//! on it (a chimney, the next facet).
+//! **One window.** A surface of texture variance `s^2`, seen in two views with noise of variance
+//! `n^2` in each, correlates by `rho = s^2 / (s^2 + n^2)` under the homography of its plane, with a
+//! scatter `tau`; windows of different surfaces correlate by chance, about 0 with a scatter
+//! `tau_0`. The evidence of a window with the correlation c is `ln N(c; rho, tau) - ln N(c; 0,
+//! tau_0)`: nothing where the texture drowns in noise (rho is 0 there), and a window that is not on
+//! the plane (a chimney, the next facet) takes back no more than [`LEAST_EVIDENCE`].
 //!
 //! **One view.** Windows overlap, so their mean, weighted as in Sim(theta), counts for as many as
 //! lie side by side: `L_i`. A view may not see the plane at all, with the probability [`OCCLUDED`]:
@@ -18,6 +20,7 @@
 //! likelihood that a plane is there.
 
 use serde::{Deserialize, Serialize};
+use wide::f64x4;
 
 use crate::base::math;
 
@@ -31,6 +34,25 @@ pub struct Posterior {
     pub plane: f64,
 }
 
+/// The correlation that a window on the plane has, and how far it scatters.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct WindowModel {
+    rho: f64,
+    /// `1 / (2 tau^2)`.
+    precision: f64,
+    /// `ln(tau_0 / tau)`.
+    log_ratio: f64,
+}
+
+/// Scatter of correlations by chance. Assumption: windows of 225 pixels hold about ten independent
+/// ones, since roofs are smooth and their tiles repeat.
+const CHANCE_SCATTER: f64 = 0.3;
+/// Scatter of correlations on a true plane without noise: shading, sampling, relief. Assumption.
+const SCATTER: f64 = 0.15;
+/// The most that views of one surface correlate by.
+const LARGEST_RHO: f64 = 0.9;
+/// Least evidence of a window.
+const LEAST_EVIDENCE: f64 = -1.5;
 /// Probability that a view does not see the neighbourhood. Assumption: one of five.
 const OCCLUDED: f64 = 0.2;
 /// The views share the reference and its noise, and neighbouring windows their texture: their
@@ -38,6 +60,57 @@ const OCCLUDED: f64 = 0.2;
 /// probabilities are about the shares of half-planes that lie on true surfaces of two rendered
 /// scenes; with a half, they were far too close to 1.
 const INDEPENDENT: f64 = 0.25;
+
+impl WindowModel {
+    /// For a window of standard deviation `contrast` in a view with noise of standard deviation
+    /// `noise`.
+    pub(super) fn new(contrast: f64, noise: f64) -> Self {
+        let share = (noise * noise) / (contrast * contrast).max(1e-12);
+        let rho = (1.0 - share).clamp(0.0, LARGEST_RHO);
+        let by_chance = (1.0 - rho * rho) * CHANCE_SCATTER;
+        let variance = by_chance * by_chance + SCATTER * SCATTER * rho * rho;
+        Self {
+            rho,
+            precision: 0.5 / variance,
+            log_ratio: 0.5 * math::ln(CHANCE_SCATTER * CHANCE_SCATTER / variance),
+        }
+    }
+
+    /// Correlation that a window on the plane is expected to have.
+    pub(super) fn rho(&self) -> f64 {
+        self.rho
+    }
+}
+
+/// The models of four windows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FourModels {
+    rho: f64x4,
+    precision: f64x4,
+    log_ratio: f64x4,
+}
+
+impl FourModels {
+    /// Side by side.
+    pub(super) fn new(models: [WindowModel; 4]) -> Self {
+        Self {
+            rho: f64x4::new(models.map(|m| m.rho)),
+            precision: f64x4::new(models.map(|m| m.precision)),
+            log_ratio: f64x4::new(models.map(|m| m.log_ratio)),
+        }
+    }
+
+    /// Logarithm of how much likelier each correlation is on the plane than by chance. More than
+    /// expected is as good as expected.
+    #[inline]
+    pub(super) fn evidence(&self, correlation: f64x4) -> f64x4 {
+        let short = (self.rho - correlation).fast_max(f64x4::ZERO);
+        let chance = correlation.fast_min(self.rho) * f64x4::splat(1.0 / CHANCE_SCATTER);
+        let ratio =
+            self.log_ratio - short * short * self.precision + f64x4::splat(0.5) * chance * chance;
+        ratio.fast_max(f64x4::splat(LEAST_EVIDENCE))
+    }
+}
 
 /// Evidence of a view from the `mean` evidence of its windows and the number of `windows` that fit
 /// side by side.
@@ -168,8 +241,27 @@ mod tests {
     }
 
     #[test]
+    fn noise_lowers_what_is_expected_and_texture_decides() {
+        let clear = WindowModel::new(0.1, 0.005);
+        let noisy = WindowModel::new(0.01, 0.007);
+        let drowned = WindowModel::new(0.01, 0.02);
+        assert!(clear.rho() > 0.89 && (noisy.rho() - 0.51).abs() < 0.01);
+        assert_eq!(drowned.rho(), 0.0);
+        // A correlation of one half speaks for a noisy plane and against a clear one.
+        let models = FourModels::new([clear, noisy, drowned, clear]);
+        let evidence = |c: f64| models.evidence(f64x4::splat(c)).to_array();
+        let [of_clear, of_noisy, ..] = evidence(0.5);
+        assert!(of_noisy > 0.5 && of_clear < of_noisy);
+        assert!(evidence(0.9)[0] > of_noisy);
+        for c in [-0.5, 0.0, 0.5, 1.0] {
+            assert!(evidence(c)[2].abs() < 1e-9, "{c}");
+            assert_eq!(evidence(c)[0], evidence(c)[3]);
+        }
+    }
+
+    #[test]
     fn a_hidden_view_costs_little() {
-        let against = evidence_of_view(-1.5, 100.0);
+        let against = evidence_of_view(LEAST_EVIDENCE, 100.0);
         assert!((against - math::ln(OCCLUDED)).abs() < 1e-6);
         assert!((evidence_of_view(2.0, 40.0) - (20.0 + math::ln(1.0 - OCCLUDED))).abs() < 1e-9);
         assert_eq!(evidence_of_view(0.0, 10.0), 0.0);

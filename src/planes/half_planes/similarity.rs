@@ -12,9 +12,8 @@ use nalgebra::Point2;
 use wide::f64x4;
 
 use super::poi::PointsOfInterest;
-use super::posterior::evidence_of_view;
+use super::posterior::{FourModels, WindowModel, evidence_of_view};
 use super::trace::SweepRejection;
-use crate::base::evidence::{WindowEvidenceTable, WindowsOfWeight};
 use crate::base::geometry::Segment3;
 use crate::base::ids::ViewId;
 use crate::base::params::{Acceptance, SweepParams};
@@ -22,9 +21,7 @@ use crate::lines::lines3d::{Side, ThetaFrame};
 use crate::orienting::scene::Scene;
 use crate::photographs::camera::homography_of_plane;
 use crate::photographs::raster::corners;
-use crate::planes::photoconsistency::{
-    CorrelationWindows, LineSideStrip, StripPatch, residual_variance,
-};
+use crate::planes::photoconsistency::{CorrelationWindows, LineSideStrip, StripPatch};
 
 /// Similarity and evidence of one view at one theta.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,8 +69,8 @@ struct ExpectedCorrelations {
     present: f64x4,
     /// Normalised weights.
     weight: f64x4,
-    /// What their correlations say of a plane; nothing beyond the last site.
-    windows: [Option<WindowsOfWeight<'static>>; 4],
+    /// What they correlate by on a plane.
+    models: FourModels,
     /// From which correlation on theirs is high.
     high_from: f64x4,
 }
@@ -110,15 +107,14 @@ impl<'a> LineSide<'a> {
             .collect();
         let sum: f64 = weights.iter().sum();
         weights.iter_mut().for_each(|w| *w /= sum);
-        let residual = f64::from(residual_variance(scene, &[reference]));
-        let texture = windows.sites.iter().map(|site| {
-            let variance = site.contrast() * site.contrast();
-            WindowEvidenceTable::fitted().of_weight(variance / (variance + residual))
-        });
-        let texture: Vec<_> = texture.collect();
-        let fours = texture.chunks(4).zip(weights.chunks(4));
+        let noise = scene.view(reference).noise;
+        let sites = windows.sites.iter();
+        let models: Vec<WindowModel> = sites
+            .map(|s| WindowModel::new(s.contrast(), noise))
+            .collect();
+        let fours = models.chunks(4).zip(weights.chunks(4));
         let expected = fours
-            .map(|(windows, weights)| ExpectedCorrelations::new(windows, weights, params))
+            .map(|(models, weights)| ExpectedCorrelations::new(models, weights, params))
             .collect();
         Ok(Self {
             scene,
@@ -206,11 +202,9 @@ impl<'a> LineSide<'a> {
         let (mut high, mut evidence) = (zero, zero);
         let fours = self.expected.iter().zip(self.correlations.chunks_exact(4));
         for (i, (expected, cor)) in fours.enumerate() {
-            let shown = shown(i);
+            let (shown, cor) = (shown(i), lanes(|lane| cor[lane]));
             let w = expected.weight * shown;
-            let said = |lane: usize| expected.windows[lane].map_or(0.0, |w| w.nats(cor[lane]));
-            evidence += w * lanes(said);
-            let cor = lanes(|lane| cor[lane]);
+            evidence += w * expected.models.evidence(cor);
             let positive = cor.fast_max(zero);
             weight += w;
             similarity += w * positive * positive;
@@ -264,19 +258,18 @@ impl<'a> LineSide<'a> {
 
 impl ExpectedCorrelations {
     /// Of up to four sites.
-    fn new(windows: &[WindowsOfWeight<'static>], weights: &[f64], params: &SweepParams) -> Self {
-        let lane = |i: usize| windows.get(i).zip(weights.get(i));
-        let of = |value: &dyn Fn(&WindowsOfWeight, f64) -> f64, absent: f64| {
-            lanes(|i| lane(i).map_or(absent, |(windows, &weight)| value(windows, weight)))
+    fn new(models: &[WindowModel], weights: &[f64], params: &SweepParams) -> Self {
+        let lane = |i: usize| models.get(i).zip(weights.get(i));
+        let of = |value: &dyn Fn(&WindowModel, f64) -> f64, absent: f64| {
+            lanes(|i| lane(i).map_or(absent, |(model, &weight)| value(model, weight)))
         };
         Self {
             present: of(&|_, _| 1.0, 0.0),
             weight: of(&|_, weight| weight, 0.0),
-            windows: std::array::from_fn(|i| windows.get(i).copied()),
-            high_from: of(
-                &|windows, _| high_correlation(windows, params),
-                f64::INFINITY,
-            ),
+            models: FourModels::new(std::array::from_fn(|i| {
+                models.get(i).copied().unwrap_or_default()
+            })),
+            high_from: of(&|model, _| high_correlation(model, params), f64::INFINITY),
         }
     }
 }
@@ -291,12 +284,14 @@ fn lanes(value: impl Fn(usize) -> f64) -> f64x4 {
     f64x4::new(std::array::from_fn(value))
 }
 
-/// The correlation from which on a site counts as high: where it speaks for the plane, if noise
-/// keeps that below the usual, unless the printed thresholds alone decide.
-fn high_correlation(windows: &WindowsOfWeight, params: &SweepParams) -> f64 {
+/// The correlation from which on a site counts as high: less than usual where noise keeps it down,
+/// unless the printed thresholds alone decide.
+fn high_correlation(model: &WindowModel, params: &SweepParams) -> f64 {
+    // Half-way between chance and a surface, about.
+    const OF_EXPECTED: f64 = 0.75;
     match params.acceptance {
         Acceptance::Printed => params.high_correlation,
-        _ => windows.least_for().min(params.high_correlation),
+        _ => (OF_EXPECTED * model.rho()).min(params.high_correlation),
     }
 }
 
