@@ -186,16 +186,6 @@ impl LineLinker {
         }
     }
 
-    /// A side of a facet on a matched line, metres, beside what the line is known to. Assumption:
-    /// delineation moves borders by as much.
-    pub(crate) const fn side_on_line() -> Self {
-        Self {
-            sine: 0.07,
-            apart: 0.15,
-            ..Self::ANY
-        }
-    }
-
     /// The side of a facet on an edge that a person names by its ends, metres. Assumption: nobody
     /// means an edge that is farther away.
     pub(crate) const fn named_edge() -> Self {

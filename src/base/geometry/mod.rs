@@ -145,6 +145,38 @@ impl Segment3 {
     pub fn line_distance(&self, point: &Point3<f64>) -> f64 {
         (point - self.p0).cross(&self.direction()).norm()
     }
+
+    /// The overlap of another segment with this one in plan; `None` without one, or where the sine
+    /// of the angle between them is larger than `sine`.
+    pub fn alongside(&self, other: &Self, sine: f64) -> Option<PlanOverlap> {
+        let along = self.p1.xy() - self.p0.xy();
+        let length = along.norm();
+        let direction = along / length;
+        let [a, b] = [other.p0, other.p1].map(|p| p.xy() - self.p0.xy());
+        let (s, t) = (a.dot(&direction), b.dot(&direction));
+        let stretch = [s.min(t).max(0.0), s.max(t).min(length)];
+        // Written so that a segment without length has no overlap.
+        let parallel = direction.perp(&(b - a)).abs() <= sine * (b - a).norm();
+        (parallel && stretch[1] > stretch[0]).then_some(())?;
+        let middle = 0.5 * (stretch[0] + stretch[1]);
+        let (own, beside) = (self.at(middle / length), other.at((middle - s) / (t - s)));
+        Some(PlanOverlap {
+            stretch,
+            apart: direction.perp(&(beside.xy() - own.xy())).abs(),
+            rise: beside.z - own.z,
+        })
+    }
+}
+
+/// Overlap of two nearly parallel segments in plan, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanOverlap {
+    /// Stretch of the first segment, from its start.
+    pub stretch: [f64; 2],
+    /// Distance in plan between the two, at the middle of the stretch.
+    pub apart: f64,
+    /// Height of the second segment above the first there.
+    pub rise: f64,
 }
 
 /// An oriented plane `normal . X + d = 0`; roof planes have `normal.z > 0`.
@@ -349,5 +381,35 @@ mod tests {
     fn covered_counts_overlaps_once() {
         let parts = [[0.0, 2.0], [1.0, 3.0], [5.0, 9.0], [-4.0, -1.0]];
         assert_eq!(covered(parts.into_iter(), [0.0, 6.0]), 4.0);
+    }
+
+    #[test]
+    fn a_segment_runs_along_another_where_both_are() {
+        let own = Segment3::new(Point3::new(1.0, 2.0, 5.0), Point3::new(11.0, 2.0, 5.0));
+        let segment = |x: [f64; 2], y: [f64; 2], z: [f64; 2]| {
+            Segment3::new(Point3::new(x[0], y[0], z[0]), Point3::new(x[1], y[1], z[1]))
+        };
+        // It rises by 1 in 10 and converges by 1 in 20; the middle of the overlap is at x = 9.
+        let other = segment([17.0, 7.0], [2.6, 2.1], [9.0, 8.0]);
+        let found = own.alongside(&other, 0.1).expect("nearly parallel");
+        assert!((found.stretch[0] - 6.0).abs() < 1e-12 && (found.stretch[1] - 10.0).abs() < 1e-12);
+        assert!((found.apart - 0.2).abs() < 1e-12, "{found:?}");
+        assert!((found.rise - 3.2).abs() < 1e-12, "{found:?}");
+        assert_eq!(own.alongside(&other, 0.04), None, "askew");
+        assert_eq!(
+            own.alongside(&segment([12.0, 20.0], [2.0; 2], [5.0; 2]), 0.1),
+            None,
+            "beyond its end"
+        );
+        assert_eq!(
+            segment([3.0; 2], [2.0; 2], [0.0, 4.0]).alongside(&own, 0.1),
+            None,
+            "upright"
+        );
+        assert_eq!(
+            own.alongside(&segment([3.0; 2], [2.0; 2], [0.0, 4.0]), 0.1),
+            None,
+            "upright"
+        );
     }
 }
