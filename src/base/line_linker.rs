@@ -177,15 +177,6 @@ impl LineLinker {
         }
     }
 
-    /// An eave over the foot of a wall in plan, metres. Assumption: no overhang is wider.
-    pub(crate) const fn eave_over_foot() -> Self {
-        Self {
-            sine: 0.15,
-            apart: 1.0,
-            ..Self::ANY
-        }
-    }
-
     /// The side of a facet on an edge that a person names by its ends, metres. Assumption: nobody
     /// means an edge that is farther away.
     pub(crate) const fn named_edge() -> Self {

@@ -7,13 +7,17 @@
 //! plane that reaches that far. There the eave is the border.
 
 use crate::base::geometry::{Plane, Segment3, covered};
-use crate::base::line_linker::LineLinker;
 use crate::base::params::RoofParams;
 use crate::lines::lines3d::Line3d;
 use crate::planes::grouping::GroupingInput;
 use crate::planes::hypotheses::{PlaneHypothesis, crosses_surface};
 use crate::planes::terrain::Ground;
 
+/// How far beside its eave, in plan, the foot of a wall may be, metres. Assumption: no overhang is
+/// wider.
+const OVERHANG_M: f64 = 1.0;
+/// Sine of the angle at which two lines run side by side.
+const PARALLEL_SINE: f64 = 0.15;
 /// Share of a line that others must run along to take its place. Assumption: half.
 const ALONGSIDE_SHARE: f64 = 0.5;
 
@@ -56,10 +60,9 @@ fn lies_in(plane: &Plane, line: &Segment3) -> bool {
 
 /// Do others run along most of a line, in plan, within an overhang's width?
 fn beside_others(line: &Segment3, others: &[Segment3]) -> bool {
-    let in_plan = |line: &Segment3| line.ends().map(|p| p.xy());
-    let (linker, own) = (LineLinker::eave_over_foot(), in_plan(line));
-    let stretches = (others.iter()).filter_map(|other| linker.shared(&own, &in_plan(other)));
-    let length = (own[1] - own[0]).norm();
+    let beside = (others.iter()).filter_map(|other| line.alongside(other, PARALLEL_SINE));
+    let stretches = beside.filter(|a| a.apart <= OVERHANG_M).map(|a| a.stretch);
+    let length = (line.p1.xy() - line.p0.xy()).norm();
     length > 0.0 && covered(stretches, [0.0, length]) >= ALONGSIDE_SHARE * length
 }
 
