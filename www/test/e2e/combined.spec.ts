@@ -19,11 +19,11 @@ test("both methods find one model of a house, and each view tells of its own sta
     .evaluateAll((all) => all.map((one) => one.dataset["stage"]));
   expect(names).toEqual([
     ...["segments", "matches", "adjustment"],
-    ...["regions", "directions", "clusters", "rectangles"],
+    ...["regions", "directions", "clusters"],
     ...[
       "lines",
-      "coplanar",
-      "adjacency",
+      "ground",
+      "rectangles",
       "halfplanes",
       "dense",
       "groups",
