@@ -52,6 +52,9 @@ use crate::results::export::export_all;
 use crate::results::texture::TexturedModel;
 use crate::roofs::model::{BuildingWalls, RoofModel};
 
+/// Segments of all views, and 3D lines.
+pub type SegmentsAndLines<'a> = (Cow<'a, [Vec<ImageSegment>]>, Cow<'a, [Line3d]>);
+
 impl Results {
     /// The roof model, with what was corrected by hand, once that stage has run.
     pub fn roof_model(&self) -> Option<&RoofModel> {
@@ -108,10 +111,7 @@ impl Results {
 
     /// The segments of all views and the 3D lines that go into the files: those that were matched
     /// over the views, those of regions where none were.
-    pub fn segments_and_lines(
-        &self,
-        scene: &Scene,
-    ) -> Option<(Cow<'_, [Vec<ImageSegment>]>, Cow<'_, [Line3d]>)> {
+    pub fn segments_and_lines(&self, scene: &Scene) -> Option<SegmentsAndLines<'_>> {
         if let (Some(segments), Some(lines)) = (&self.segments, &self.lines) {
             // Without facets nothing contradicts them.
             let all = self

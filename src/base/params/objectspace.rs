@@ -51,7 +51,7 @@ impl Default for PlaneParams {
 }
 
 /// W96 3.1: where buildings are. The paper assumes it known.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct WindowParams {
@@ -61,15 +61,6 @@ pub struct WindowParams {
     /// Heights between which lines are sought, metres in the frame of the orientation; estimated
     /// where `None`.
     pub z_range_m: Option<[f64; 2]>,
-}
-
-impl Default for WindowParams {
-    fn default() -> Self {
-        Self {
-            given_m: Vec::new(),
-            z_range_m: None,
-        }
-    }
 }
 
 /// W96 3.4: main directions.

@@ -1,12 +1,11 @@
 //! Corners matched over the views, and the planes that they propose (B99 2: Bonn).
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::{Findings, Outcome, Proposals, Results, Stage, StageDefinition};
 use super::{is_any, required, to_bytes, untraced, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
 use crate::planes::adjacency::{AdjacencyTrace, CornerPlane, corner_planes};
-use crate::planes::grouping::ProposedPlane;
 
 /// Planes of corners, verified or not; the graphs and the corners are in the trace.
 pub(super) type Found = Outcome<Vec<CornerPlane>, AdjacencyTrace>;
@@ -22,7 +21,7 @@ impl StageDefinition for Adjacency {
     const READS: &'static [&'static str] = &["roof.border_nats_per_m"];
     const NEEDS: &'static [Stage] = &[Stage::Segments, Stage::Lines];
 
-    const PROPOSALS: Option<fn(&Found) -> Vec<ProposedPlane>> = Some(|found| {
+    const PROPOSALS: Proposals<Found> = Some(|found| {
         let verified = (found.value.iter().enumerate()).filter(|(_, plane)| plane.is_verified());
         verified.map(|(i, plane)| plane.proposed(i)).collect()
     });

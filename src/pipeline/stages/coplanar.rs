@@ -1,12 +1,11 @@
 //! Coplanar lines and their polygons (B99 2: Leuven; 5).
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::{Findings, Outcome, Proposals, Results, Stage, StageDefinition};
 use super::{is_any, required, to_bytes, untraced, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
 use crate::planes::coplanar::{CoplanarSet, CoplanarTrace, coplanar_sets};
-use crate::planes::grouping::ProposedPlane;
 
 /// Sets of coplanar lines with their polygons, verified or not.
 pub(super) type Found = Outcome<Vec<CoplanarSet>, CoplanarTrace>;
@@ -22,7 +21,7 @@ impl StageDefinition for Coplanar {
     const READS: &'static [&'static str] = &["roof.border_nats_per_m"];
     const NEEDS: &'static [Stage] = &[Stage::Segments, Stage::Lines];
 
-    const PROPOSALS: Option<fn(&Found) -> Vec<ProposedPlane>> = Some(|found| {
+    const PROPOSALS: Proposals<Found> = Some(|found| {
         let verified = (found.value.iter().enumerate()).filter(|(_, set)| set.is_verified());
         verified.map(|(i, set)| set.proposed(i)).collect()
     });

@@ -1,13 +1,12 @@
 //! Planes from dense matching (B99 2).
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::{Findings, Outcome, Proposals, Results, Stage, StageDefinition};
 use super::{from_bytes, required, to_bytes};
 use crate::base::execution::Sharded;
 use crate::base::params::{Params, Source};
 use crate::orienting::known::KnownThing;
 use crate::orienting::scene::Scene;
 use crate::planes::dense::{CloudComparison, DensePlane, DenseTrace, dense_planes};
-use crate::planes::grouping::ProposedPlane;
 
 /// Planes of the surfaces that the views agree on.
 pub(super) type Found = Outcome<Vec<DensePlane>, DenseTrace>;
@@ -22,7 +21,7 @@ impl StageDefinition for Dense {
     const SECTION: &'static str = "B99 2";
     const READS: &'static [&'static str] = &["point_cloud"];
     const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground];
-    const PROPOSALS: Option<fn(&Found) -> Vec<ProposedPlane>> = Some(|found| {
+    const PROPOSALS: Proposals<Found> = Some(|found| {
         let planes = found.value.iter().enumerate();
         let of_cloud = found.trace.counted_cloud().into_iter();
         let of_cloud = of_cloud.flat_map(|cloud| &cloud.planes).enumerate();

@@ -158,6 +158,9 @@ impl<V, T> From<(V, T)> for Outcome<V, T> {
     }
 }
 
+/// How a source makes planes of what it found; `None` for a stage that is no source.
+type Proposals<Found> = Option<fn(&Found) -> Vec<ProposedPlane>>;
+
 /// Everything that is particular to one stage.
 pub(super) trait StageDefinition {
     /// What it finds.
@@ -176,7 +179,7 @@ pub(super) trait StageDefinition {
     /// Does it take in what all sources propose?
     const TAKES_PROPOSALS: bool = false;
     /// The planes that it proposes for roofs, where it is a source of them.
-    const PROPOSALS: Option<fn(&Self::Found) -> Vec<ProposedPlane>> = None;
+    const PROPOSALS: Proposals<Self::Found> = None;
     /// Its sharded maps, in the order in which they are called.
     const SHARD_MAPS: &'static [&'static str] = &[];
     /// Do its sharded maps read the colours of the views, or grey values only?

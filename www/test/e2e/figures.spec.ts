@@ -250,7 +250,7 @@ test("what was rejected is picked, too: it says why, and shows in every view and
     /^Rejected line/.test((await title.allTextContents())[0] ?? ""),
   );
   await expect(inspector().locator("div", { hasText: /^Rejected/ })).toContainText(
-    /curve|texture|bar beside/,
+    /curve|texture|segment already/,
   );
 
   await openTab(page, "Facets");

@@ -1,11 +1,10 @@
 //! Planes between parallel lines and the closed buildings below them (W96 3.6).
 
-use super::super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::super::{Findings, Outcome, Proposals, Results, Stage, StageDefinition};
 use super::super::{from_bytes, is_any, required, to_bytes, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
-use crate::planes::grouping::ProposedPlane;
 use crate::planes::objectspace::{RectangleTrace, find_rectangles, proposed_planes};
 use crate::roofs::buildings::roofs_of_rectangles;
 use crate::roofs::model::RoofModel;
@@ -28,8 +27,7 @@ impl StageDefinition for Rectangles {
         Stage::Clusters,
         Stage::Ground,
     ];
-    const PROPOSALS: Option<fn(&Found) -> Vec<ProposedPlane>> =
-        Some(|found| proposed_planes(&found.trace));
+    const PROPOSALS: Proposals<Found> = Some(|found| proposed_planes(&found.trace));
     const SHARD_MAPS: &'static [&'static str] = &["planes", "behind"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
