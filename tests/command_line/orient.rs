@@ -69,12 +69,7 @@ fn run<'a>(arguments: impl IntoIterator<Item = &'a OsStr>) -> Output {
 fn photographs_alone_are_oriented_into_a_folder_that_is_read_on() {
     let photographs = Photographs::new();
     let output = photographs.orient(&["--features", "800", "--focal", "216"]);
-    let printed = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let printed = crate::printed(&output);
     assert!(
         printed.starts_with("9 of 9 photographs oriented"),
         "{printed}"
@@ -96,12 +91,7 @@ fn photographs_alone_are_oriented_into_a_folder_that_is_read_on() {
     );
     assert_eq!(contents_of(&photographs.out()), first);
     let output = photographs.check();
-    let printed = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let printed = crate::printed(&output);
     assert!(
         printed.contains("images and orientation agree"),
         "{printed}"
@@ -148,12 +138,7 @@ fn control_points_give_the_map_and_a_wrong_one_is_named() {
     let list = list.to_str().unwrap();
     let options = ["--features", "800", "--focal", "216"];
     let output = photographs.orient(&[&options[..], &["--gcp", list]].concat());
-    let printed = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let printed = crate::printed(&output);
     for words in [
         "EPSG:25832, x from 432100 and y from 5412300 m: 5 of 6 ground control points",
         "ground control point middle is -1.9",

@@ -29,6 +29,21 @@ fn words(output: &Output) -> String {
 struct Block(tempfile::TempDir);
 
 impl Block {
+    /// Does an archive of the files give the results that the folder does?
+    fn is_the_same_from(&self, archive: &[u8]) {
+        fs::write(self.0.path().join("scene.zip"), archive).unwrap();
+        let model_of = |scene: &str, out: &str| {
+            let mut command = self.command();
+            command.args(["reconstruct", scene, "--roi", "-31,-31,31,31", "--out", out]);
+            let output = command.args(["--max-views", "3"]).output().unwrap();
+            assert!(output.status.success(), "{}", words(&output));
+            let mut files = files_in(&self.0.path().join(out));
+            files.remove("report.json");
+            files
+        };
+        assert!(model_of("scene", "a") == model_of("scene.zip", "b"));
+    }
+
     /// A plan without parts.
     fn planned() -> Self {
         Self::planned_of(crate::common::synthetic_files())
@@ -425,17 +440,7 @@ fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
         fs::write(images.join(name), bytes).unwrap();
     }
     let archive = crate::common::zipped(&crate::common::synthetic_files());
-    fs::write(block.0.path().join("scene.zip"), archive).unwrap();
-    let model_of = |scene: &str, out: &str| {
-        let mut command = block.command();
-        command.args(["reconstruct", scene, "--roi", "-31,-31,31,31", "--out", out]);
-        let output = command.args(["--max-views", "3"]).output().unwrap();
-        assert!(output.status.success(), "{}", words(&output));
-        let mut files = files_in(&block.0.path().join(out));
-        files.remove("report.json");
-        files
-    };
-    assert!(model_of("scene", "a") == model_of("scene.zip", "b"));
+    block.is_the_same_from(&archive);
 }
 
 /// The scene with its photographs as TIFFs, whose directories stand in every place in turn.
@@ -516,17 +521,7 @@ fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
     assert!(others > 2 && refused > 0, "{others} {refused}");
     // The files of an archive are read whole, to the same results.
     let archive = crate::common::zipped(&tiff_files());
-    fs::write(block.0.path().join("scene.zip"), archive).unwrap();
-    let model_of = |scene: &str, out: &str| {
-        let mut command = block.command();
-        command.args(["reconstruct", scene, "--roi", "-31,-31,31,31", "--out", out]);
-        let output = command.args(["--max-views", "3"]).output().unwrap();
-        assert!(output.status.success(), "{}", words(&output));
-        let mut files = files_in(&block.0.path().join(out));
-        files.remove("report.json");
-        files
-    };
-    assert!(model_of("scene", "a") == model_of("scene.zip", "b"));
+    block.is_the_same_from(&archive);
 }
 
 #[test]

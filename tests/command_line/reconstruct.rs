@@ -33,10 +33,10 @@ const OUTPUTS: [&str; 21] = [
 ];
 
 /// A scene's folder that a test may damage, with a folder for the results.
-struct Scene(tempfile::TempDir);
+pub(crate) struct Scene(pub(crate) tempfile::TempDir);
 
 impl Scene {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let scene = Self(tempfile::tempdir().unwrap());
         for (path, bytes) in synthetic_files() {
             scene.write(&path, &bytes);
@@ -86,11 +86,11 @@ impl Scene {
         self.write(path, text.replacen(from, to, 1).as_bytes());
     }
 
-    fn out(&self) -> std::path::PathBuf {
+    pub(crate) fn out(&self) -> std::path::PathBuf {
         self.0.path().join("out")
     }
 
-    fn run(&self, more: &[&str]) -> Output {
+    pub(crate) fn run(&self, more: &[&str]) -> Output {
         Command::new(env!("CARGO_BIN_EXE_ridgeline"))
             .arg("reconstruct")
             .arg(self.0.path().join("scene"))
@@ -120,12 +120,7 @@ impl Scene {
 fn a_good_scene_gives_all_files() {
     let scene = Scene::new();
     let output = scene.run(&["--threads", "2", "--method", "lines"]);
-    let printed = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let printed = crate::printed(&output);
     assert_eq!(names_in(&scene.out()), OUTPUTS);
     for word in ["segments", "halfplanes", "facets", "model.glb"] {
         assert!(printed.contains(word), "'{word}' is not in: {printed}");
@@ -401,12 +396,7 @@ fn a_corrected_scene_survives_the_way_through_a_project() {
         "--project",
         project.to_str().unwrap(),
     ]);
-    let printed = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let printed = crate::printed(&output);
     assert!(
         printed.contains("was corrected") && printed.contains("kappa in gon"),
         "{printed}"
@@ -418,11 +408,7 @@ fn a_corrected_scene_survives_the_way_through_a_project() {
         .args([&project, Path::new("--out"), &again])
         .output()
         .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    crate::printed(&output);
     assert_eq!(names_in(&again), OUTPUTS);
     for name in OUTPUTS.into_iter().filter(|&name| name != "report.json") {
         let read = |folder: &Path| fs::read(folder.join(name)).unwrap();
@@ -430,56 +416,6 @@ fn a_corrected_scene_survives_the_way_through_a_project() {
     }
     let model = fs::read_to_string(again.join("model.city.json")).unwrap();
     assert!(model.contains("https://www.opengis.net/def/crs/EPSG/0/25832"));
-}
-
-#[test]
-fn a_report_is_made_again_and_of_what_is_no_model_it_is_not() {
-    let scene = Scene::new();
-    assert!(scene.run(&[]).status.success());
-    let page = scene.out().join("roof_report.html");
-    let report = |arguments: &[&Path]| {
-        let command = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
-            .arg("report")
-            .args(arguments)
-            .output();
-        command.unwrap()
-    };
-    let first = fs::read(&page).unwrap();
-    fs::remove_file(&page).unwrap();
-    let output = report(&[&scene.out()]);
-    assert!(output.status.success());
-    assert!(String::from_utf8_lossy(&output.stdout).contains("roof_report.html"));
-    assert!(fs::read(&page).unwrap() == first);
-    // Of a file, into another folder.
-    let other = scene.0.path().join("elsewhere/report");
-    let city = scene.out().join("model.city.json");
-    assert!(
-        report(&[&city, Path::new("--out"), &other])
-            .status
-            .success()
-    );
-    assert_eq!(
-        names_in(&other),
-        [
-            "buildings.csv",
-            "edges.csv",
-            "facets.csv",
-            "roof_report.html"
-        ]
-    );
-    for (path, reason) in [
-        (scene.out().join("report.json"), "is no CityJSON"),
-        (scene.0.path().join("nothing"), "cannot be read"),
-        (
-            scene.0.path().join("scene"),
-            "give the folder of a reconstruction",
-        ),
-    ] {
-        let output = report(&[&path]);
-        assert_eq!(output.status.code(), Some(2));
-        let error = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(error.contains(reason), "{error}");
-    }
 }
 
 #[test]
@@ -559,12 +495,7 @@ fn earlier_results_within_the_scene_are_not_part_of_it() {
 fn tiles_give_the_model_of_the_whole() {
     let scene = Scene::new();
     let output = scene.run(&["--roi", "-31,-31,31,31", "--tile", "60", "--ground-z", "0"]);
-    let printed = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let printed = crate::printed(&output);
     assert!(printed.contains("tile 4 of 4"), "{printed}");
     assert_eq!(names_in(&scene.out()), OUTPUTS);
     // The house stands in the middle, where four tiles meet: it is taken once, and whole.
