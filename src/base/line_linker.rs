@@ -49,8 +49,8 @@ impl LineLinker {
         share: 0.0,
     };
 
-    /// A colour edge beside an edge in grey values, px: nearer than the detector separates edges, at
-    /// both ends of what they share, one is the blur of the other.
+    /// A colour edge beside an edge in grey values, px: nearer than the detector separates edges,
+    /// at both ends of what they share, one is the blur of the other.
     pub(crate) const fn blurred_edge(clear_px: f64) -> Self {
         Self {
             apart: clear_px,

@@ -1,7 +1,7 @@
 //! The page's session in Node: the whole pipeline on a synthetic scene finds what it finds natively
 //! (`tests/wasm/identical.mjs` compares the bytes), and bad input is refused in words.
 //!
-//! `wasm-pack test --node --release -- --test wasm`
+//! `wasm-pack test --node tests/wasm --profile page`
 #![cfg(target_arch = "wasm32")]
 #![allow(clippy::unwrap_used)]
 
@@ -30,6 +30,7 @@ fn refusal(session: &mut Session) -> (String, String) {
     (error.name().into(), error.message().into())
 }
 
+#[track_caller]
 fn member(object: &JsValue, name: &str) -> JsValue {
     Reflect::get(object, &name.into()).unwrap()
 }
@@ -124,7 +125,7 @@ fn the_figures_answer(session: &mut Session, half_plane: &JsValue) {
         sources.length(),
         Array::from(&session.facets().unwrap()).length()
     );
-    let buildings = Array::from(&member(&member(&refinement, "trace"), "buildings"));
+    let buildings = Array::from(&member(&refinement, "buildings"));
     let relations = Array::from(&member(&buildings.get(0), "relations"));
     assert!(
         member(&relations.get(0), "chi2")

@@ -129,3 +129,51 @@ impl Equations for EnvelopeEquations<'_> {
         Some(step)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Residuals `row . x - y` of a planted solution, in three unknowns.
+    const ROWS: [[f64; 3]; 5] = [
+        [2.0, -1.0, 0.5],
+        [0.3, 1.5, -0.7],
+        [-1.1, 0.4, 2.2],
+        [0.9, 0.9, -0.1],
+        [0.2, -2.0, 1.0],
+    ];
+
+    fn residual(row: &[f64; 3], x: [f64; 3], planted: [f64; 3]) -> f64 {
+        (0..3).map(|i| row[i] * (x[i] - planted[i])).sum()
+    }
+
+    #[test]
+    fn one_step_leads_to_the_planted_solution() {
+        let planted = [1.5, -2.0, 0.25];
+        let start = [-3.0, 4.0, 1.0];
+        let pattern = Pattern::new(3, &[vec![0, 1, 2]]);
+        let mut many = EnvelopeEquations::new(&pattern);
+        let mut few = NormalEquations::<3>::default();
+        for row in &ROWS {
+            let r = residual(row, start, planted);
+            many.add([r], &[0, 1, 2], [&row[..]], Loss::Squares);
+            let jacobian = SMatrix::<f64, 1, 3>::from_row_slice(row);
+            few.add(&SVector::<f64, 1>::new(r), &jacobian, Loss::Squares);
+        }
+        assert!((many.cost - few.cost).abs() < 1e-9);
+        let (many, few) = (many.step(0.0).unwrap(), few.step(0.0).unwrap());
+        for i in 0..3 {
+            assert!((start[i] + many[i] - planted[i]).abs() < 1e-9);
+            assert!((start[i] + few[i] - planted[i]).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn what_no_residual_determines_has_no_step() {
+        let pattern = Pattern::dense(2);
+        let mut many = EnvelopeEquations::new(&pattern);
+        many.add([1.0], &[0, 1], [&[1.0, 1.0]], Loss::Squares);
+        assert!(many.step(0.0).is_none());
+        assert!(many.step(1e-3).is_some());
+    }
+}

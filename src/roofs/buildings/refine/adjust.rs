@@ -135,11 +135,12 @@ impl<'a> AdjustmentProblem<'a> {
         &self,
         start: &WireframeState,
         pattern: &'p Pattern,
+        stop: Stop,
     ) -> Option<Solution<'p>> {
         let equations = |state: &WireframeState| self.equations(state, pattern);
         let moved =
             |state: &WireframeState, step: &Vec<f64>| state + DVector::from_column_slice(step);
-        let (state, equations) = fit(start.clone(), equations, moved, Stop::default())?;
+        let (state, equations) = fit(start.clone(), equations, moved, stop)?;
         self.solution(state, equations)
     }
 

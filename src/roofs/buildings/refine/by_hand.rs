@@ -15,6 +15,7 @@ use super::relations::propose;
 use super::statement::Statement;
 use super::uncertainty::uncertainty_on;
 use super::wireframe::{Wireframe, WireframeState};
+use crate::base::least_squares::Stop;
 use crate::base::params::RefineParams;
 use crate::orienting::scene::Scene;
 use crate::roofs::model::{Facet, SideSupport};
@@ -23,6 +24,12 @@ use crate::roofs::model::{Facet, SideSupport};
 const UNKNOWN_SIGMA_M: f64 = 0.1;
 /// No corner is known better than that, metres: what is stated by hand weighs more.
 const LEAST_SIGMA_M: f64 = 0.05;
+/// What holds exactly lets a corner that goes a metre only bend its way there: short steps, of which
+/// each gains little.
+const STOP: Stop = Stop {
+    steps: 400,
+    least_gain: 1e-9,
+};
 /// A relation from which the building is this far does not hold in it, metres.
 const HOLDS_M: f64 = 0.02;
 
@@ -62,7 +69,7 @@ pub fn adjust_to_statements(
         loss: params.loss_sigmas,
     };
     let pattern = problem.pattern();
-    let solution = problem.solve(&start, &pattern)?;
+    let solution = problem.solve(&start, &pattern, STOP)?;
     let uncertainties = uncertainty_on(&problem, &solution, &supports);
     let adjusted = wireframe.facets(&solution.state, facets);
     let known = adjusted.into_iter().zip(uncertainties);

@@ -60,6 +60,7 @@ use self::relation_tests::adopt_relations;
 use self::uncertainty::uncertainty_of;
 use self::wireframe::{Wireframe, WireframeState};
 use crate::base::ids::BuildingId;
+use crate::base::least_squares::Stop;
 use crate::base::params::{RefineParams, RoofParams};
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
@@ -266,7 +267,9 @@ impl BuildingRefiner<'_> {
         let singular = || rejected(RefineRejection::Singular);
         let far = problem(&start, open);
         let pattern = far.pattern();
-        let near = far.solve(&start, &pattern).ok_or_else(singular)?;
+        let near = far
+            .solve(&start, &pattern, Stop::default())
+            .ok_or_else(singular)?;
         let mut problem = problem(&near.state, &vec![false; open.len()]);
         report.observations = problem.observations();
         if report.observations < params.min_observations {
@@ -274,7 +277,9 @@ impl BuildingRefiner<'_> {
             return Err(rejected(RefineRejection::FewObservations { observations }));
         }
         let pattern = problem.pattern();
-        let free = problem.solve(&near.state, &pattern).ok_or_else(singular)?;
+        let free = problem
+            .solve(&near.state, &pattern, Stop::default())
+            .ok_or_else(singular)?;
         let (regular, uncertainties) =
             regularised(&mut problem, &free, params, &mut report.relations).ok_or_else(singular)?;
 
@@ -318,7 +323,7 @@ fn regularised(
     problem.terms.extend(terms);
     // Relations join unknowns that no image edge does.
     let pattern = problem.pattern();
-    let solution = problem.solve(&free.state, &pattern)?;
+    let solution = problem.solve(&free.state, &pattern, Stop::default())?;
     let uncertainties = uncertainty_of(problem, &solution);
     Some((solution.state, uncertainties))
 }

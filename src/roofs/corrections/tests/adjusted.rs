@@ -87,6 +87,21 @@ fn an_end_of_a_ridge_takes_the_other_with_it() {
 }
 
 #[test]
+fn a_corner_that_goes_far_arrives() {
+    let to = [6.0, -5.5, 6.0];
+    let pulled = Correction::MoveCorner {
+        from: world([6.0, -4.0, 6.0]),
+        to: world(to),
+        sigma_m: 0.02,
+    };
+    let found = mended(&truth(), &[pulled]);
+    let all = found.facets.iter().flat_map(|f| &f.outer);
+    let least = all.map(|p| (p - Point3::from(to)).norm());
+    let least = least.fold(f64::MAX, f64::min);
+    assert!(least < 0.02, "{least}");
+}
+
+#[test]
 fn corners_put_one_after_the_other_all_stay() {
     let places = [
         [-6.5, -4.5, 6.0],
