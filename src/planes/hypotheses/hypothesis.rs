@@ -3,10 +3,10 @@
 use nalgebra::Vector2;
 
 use super::line_sides::{NEXT_TO, across, beside, crosses_surface};
-use super::plane_lines::{PlaneLine, lines_in_plane, rays_through_ends};
+use super::plane_lines::{EndRays, PlaneLine, lines_in_plane, rays_through_ends};
 use super::single_view::{SingleViewEvidence, single_view_evidence};
 use crate::base::evidence::WindowEvidenceTable;
-use crate::base::execution::{Sharded, sharded_map};
+use crate::base::execution::{Sharded, map, sharded_map};
 use crate::base::geometry::{Segment3, bounds};
 use crate::base::params::RoofParams;
 use crate::lines::lines2d::ImageSegment;
@@ -29,50 +29,90 @@ pub(crate) struct PlaneHypothesis {
     pub lines: Vec<PlaneLine>,
 }
 
-/// Compares the views (in `reduced`, whose pixels are about as far apart as the samples of cells of
-/// `step` metres) on every group's plane;
-/// planes of two lines that the images contradict beside their own lines are dropped.
-pub(crate) fn plane_hypotheses(
-    scene: &Scene,
-    reduced: &Scene,
-    segments: &[Vec<ImageSegment>],
-    input: &GroupingInput,
-    groups: Vec<PlaneGroup>,
+/// What hypotheses are measured with.
+pub(crate) struct PlaneMeasurement<'a> {
+    scene: &'a Scene,
+    /// With pixels about as far apart as the samples of cells.
+    reduced: &'a Scene,
+    rays: EndRays,
+    input: &'a GroupingInput<'a>,
+    /// Size of the cells, metres.
     step: f64,
-    params: &RoofParams,
-) -> Sharded<Vec<PlaneHypothesis>> {
-    let rays = rays_through_ends(scene, segments);
-    let built = sharded_map("planes", &groups, 0.2..0.65, |_, group| {
+    params: &'a RoofParams,
+}
+
+impl<'a> PlaneMeasurement<'a> {
+    pub(crate) fn new(
+        (scene, reduced): (&'a Scene, &'a Scene),
+        segments: &[Vec<ImageSegment>],
+        input: &'a GroupingInput<'a>,
+        step: f64,
+        params: &'a RoofParams,
+    ) -> Self {
+        Self {
+            scene,
+            reduced,
+            rays: rays_through_ends(scene, segments),
+            input,
+            step,
+            params,
+        }
+    }
+
+    /// Compares the views on every group's plane; planes of two lines that the images contradict
+    /// beside their own lines are dropped. Instances may divide the groups between them.
+    pub(crate) fn sharded(&self, groups: &[PlaneGroup]) -> Sharded<Vec<PlaneHypothesis>> {
+        let found = sharded_map("planes", groups, 0.2..0.65, |_, group| self.measured(group))?;
+        let hypotheses = groups.iter().zip(found);
+        Ok(hypotheses
+            .filter_map(|(group, found)| Some(hypothesis(group, found?)))
+            .collect())
+    }
+
+    /// The same by this instance alone, which may know of what the others do not.
+    pub(crate) fn alone(&self, groups: &[PlaneGroup]) -> Vec<PlaneHypothesis> {
+        let found = map(groups, |_, group| {
+            Some(hypothesis(group, self.measured(group)?))
+        });
+        found.into_iter().flatten().collect()
+    }
+
+    fn measured(&self, group: &PlaneGroup) -> Option<Measured> {
+        let (reduced, input, step) = (self.reduced, self.input, self.step);
         if group.is_propagated(input) && !confirmed_beside_lines(input, group, reduced, step) {
             return None;
         }
-        let region = PlanRegion::new(input, group, params);
+        let region = PlanRegion::new(input, group, self.params);
         let [min, max] = region.bounds();
         let map = consistency_map(reduced, &group.plane, &PlanGrid::covering(min, max, step));
         let proposed_by_lines = group.half_planes().is_empty() && group.proposals.is_empty();
         if proposed_by_lines && !supported(input, group, &map) {
             return None;
         }
-        let single_view = single_view_evidence(scene, &group.plane, &region, &map);
+        let single_view = single_view_evidence(self.scene, &group.plane, &region, &map);
         let ends_at = |edge: &Segment3| single_view.ends_at(&map, edge);
-        let mut lines = lines_in_plane(scene, &rays, &group.plane, &region, ends_at);
+        let mut lines = lines_in_plane(self.scene, &self.rays, &group.plane, &region, ends_at);
         lines.retain(|l| !crosses_surface(&map, &l.segment));
         Some((region, map, single_view, lines))
-    })?;
-    let hypotheses = groups
-        .into_iter()
-        .zip(built)
-        .filter_map(|(group, built)| {
-            built.map(|(region, map, single_view, lines)| PlaneHypothesis {
-                group,
-                region,
-                map,
-                single_view,
-                lines,
-            })
-        })
-        .collect();
-    Ok(hypotheses)
+    }
+}
+
+/// What is found on the plane of a group.
+type Measured = (
+    PlanRegion,
+    ConsistencyMap,
+    SingleViewEvidence,
+    Vec<PlaneLine>,
+);
+
+fn hypothesis(group: &PlaneGroup, (region, map, single_view, lines): Measured) -> PlaneHypothesis {
+    PlaneHypothesis {
+        group: group.clone(),
+        region,
+        map,
+        single_view,
+        lines,
+    }
 }
 
 /// Where there is texture, are the views consistent with the plane beside at least two of its

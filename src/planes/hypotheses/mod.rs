@@ -12,6 +12,6 @@ mod line_sides;
 pub(crate) mod plane_lines;
 pub(crate) mod single_view;
 
-pub(crate) use hypothesis::{PlaneHypothesis, plane_hypotheses};
+pub(crate) use hypothesis::{PlaneHypothesis, PlaneMeasurement};
 pub(crate) use line_sides::crosses_surface;
 pub use plane_lines::PlaneLine;

@@ -10,17 +10,18 @@ use serde::Serialize;
 
 use super::borders::{Arrangement, Border, BorderKind, LineIndex, border_lines, bounding_lines};
 use super::competing_planes::CompetingPlanes;
-use super::dominated::without_dominated;
+use super::dominated::{supported, without_dominated};
 use super::evidence::PlaneEvidence;
 use super::input::FacetInput;
 use super::point_cloud::CloudEvidence;
+use super::refitting::refitted_groups;
 use crate::base::execution::{Sharded, reached, sharded_map};
 use crate::base::geometry::{Plane, bounds, sides};
 use crate::base::params::RoofParams;
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
 use crate::planes::grouping::{PlanRegion, PlaneGroup};
-use crate::planes::hypotheses::{PlaneLine, plane_hypotheses};
+use crate::planes::hypotheses::{PlaneHypothesis, PlaneLine, PlaneMeasurement};
 use crate::planes::photoconsistency::{
     ConsistencyMap, PlanGrid, ShiftableWindows, consistency_map_of_surface,
 };
@@ -75,17 +76,22 @@ pub fn competing_planes(
     reached(0.1);
     // Both compare the views on planes, independently of each other: one map.
     let ground_map = ground_map(&reduced, ground, &grid);
-    let hypotheses = plane_hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
+    let measurement = PlaneMeasurement::new((scene, &reduced), segments, &input, grid.step, params);
+    let hypotheses = measurement.sharded(&groups);
     let (ground_map, hypotheses) = (ground_map?, hypotheses?);
     let windows = ShiftableWindows::new(lines.iter().map(|l| l.segment), &grid);
     let cloud = cloud.map(|cloud| CloudEvidence::new(Arc::clone(cloud), ground, &grid));
-    let hypotheses = without_dominated(
-        hypotheses,
-        ground_map.as_ref(),
-        &windows,
-        &grid,
-        cloud.as_ref(),
-    );
+    let with_support = |hypotheses| {
+        let ground = ground_map.as_ref();
+        supported(hypotheses, ground, &windows, &grid, cloud.as_ref())
+    };
+    let mut planes = without_dominated(with_support(hypotheses));
+    if let Some(cloud) = &cloud {
+        let refitted = refitted_groups(&planes, cloud, &grid, &input, params);
+        planes.extend(with_support(measurement.alone(&refitted)));
+        planes = without_dominated(planes);
+    }
+    let hypotheses: Vec<PlaneHypothesis> = planes.into_iter().map(|p| p.hypothesis).collect();
     reached(0.7);
     let bounding = bounding_lines(&input, &hypotheses, ground, params);
     let borders = border_lines(

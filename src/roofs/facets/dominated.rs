@@ -5,6 +5,8 @@
 //! cells. A plane has to pay for itself, as a label costs in the energies of multi-model fitting
 //! (Isack and Boykov 2012).
 
+use nalgebra::Point2;
+
 use super::point_cloud::{CloudEvidence, OfPlane};
 use crate::base::math::larger;
 use crate::planes::hypotheses::PlaneHypothesis;
@@ -12,31 +14,52 @@ use crate::planes::photoconsistency::{ConsistencyMap, PlanGrid, ShiftableWindows
 
 /// The price of one more plane, nats. Of 1, 2, 3, 4 and 8 the largest that cost the sixteen fitting
 /// scenes nothing.
-pub(super) const PLANE_NATS: f64 = 2.0;
+const PLANE_NATS: f64 = 2.0;
 /// Positions this far apart, metres, tell what windows of a metre say.
 const SPACING: f64 = 0.35;
 
-/// The hypotheses, in their order, that say more than their price which no stronger one says.
-pub(super) fn without_dominated(
+/// A hypothesis with what speaks for it.
+pub(super) struct SupportedPlane {
+    pub hypothesis: PlaneHypothesis,
+    pub support: Support,
+}
+
+/// The hypotheses with what the views and a point cloud say for them.
+pub(super) fn supported(
     hypotheses: Vec<PlaneHypothesis>,
     ground: Option<&ConsistencyMap>,
     windows: &ShiftableWindows,
     grid: &PlanGrid,
     cloud: Option<&CloudEvidence>,
-) -> Vec<PlaneHypothesis> {
-    let every = (SPACING / grid.step).round().max(1.0) as usize;
+) -> Vec<SupportedPlane> {
     let supports = crate::base::execution::map(&hypotheses, |_, h| {
         let of_cloud = cloud.map(|cloud| cloud.of(&h.group.plane));
-        Support::of(h, ground, windows, (grid, every), of_cloud.as_ref())
+        Support::of(h, ground, windows, grid, of_cloud.as_ref())
     });
-    let stays = not_dominated(&supports);
-    (hypotheses.into_iter().zip(stays))
-        .filter_map(|(h, stays)| stays.then_some(h))
+    (hypotheses.into_iter().zip(supports))
+        .map(|(hypothesis, support)| SupportedPlane {
+            hypothesis,
+            support,
+        })
         .collect()
 }
 
+/// Those, in their order, that say more than their price which no stronger one says.
+pub(super) fn without_dominated(planes: Vec<SupportedPlane>) -> Vec<SupportedPlane> {
+    let supports: Vec<&Support> = planes.iter().map(|plane| &plane.support).collect();
+    let stays = not_dominated(&supports);
+    (planes.into_iter().zip(stays))
+        .filter_map(|(plane, stays)| stays.then_some(plane))
+        .collect()
+}
+
+/// Columns and rows of a grid from one position to the next.
+pub(super) fn columns_apart(grid: &PlanGrid) -> usize {
+    (SPACING / grid.step).round().max(1.0) as usize
+}
+
 /// Which of several planes no stronger one of those that stay dominates.
-fn not_dominated(supports: &[Support]) -> Vec<bool> {
+fn not_dominated(supports: &[&Support]) -> Vec<bool> {
     let mut strongest: Vec<usize> = (0..supports.len()).collect();
     strongest.sort_by(|a, b| {
         supports[*b]
@@ -47,7 +70,7 @@ fn not_dominated(supports: &[Support]) -> Vec<bool> {
     let mut stays = vec![false; supports.len()];
     let mut kept: Vec<&Support> = Vec::new();
     for i in strongest {
-        let support = &supports[i];
+        let support = supports[i];
         let pays = |other: &&Support| support.pays_beside(other);
         if support.total > PLANE_NATS && kept.iter().all(pays) {
             stays[i] = true;
@@ -59,21 +82,22 @@ fn not_dominated(supports: &[Support]) -> Vec<bool> {
 
 /// Where the views and a point cloud speak for a plane more than for the ground.
 #[derive(Default)]
-struct Support {
+pub(super) struct Support {
     /// Positions of the plan, ascending, with what is said there, nats.
     positions: Vec<(u32, f64)>,
     total: f64,
 }
 
 impl Support {
-    /// At every so many columns and rows of `grid`.
+    /// At some of the columns and rows of `grid` ([`columns_apart`]).
     fn of(
         h: &PlaneHypothesis,
         ground: Option<&ConsistencyMap>,
         windows: &ShiftableWindows,
-        (grid, every): (&PlanGrid, usize),
+        grid: &PlanGrid,
         cloud: Option<&OfPlane>,
     ) -> Self {
+        let every = columns_apart(grid);
         let window = &h.map.grid;
         let (dc, dr) = window.offset_in(grid);
         let places = |size: usize, offset: isize, of_grid: usize| {
@@ -105,6 +129,15 @@ impl Support {
             }
         }
         support
+    }
+
+    /// The positions in plan, metres.
+    pub(super) fn places<'a>(
+        &'a self,
+        grid: &'a PlanGrid,
+    ) -> impl Iterator<Item = Point2<f64>> + 'a {
+        let places = (self.positions.iter()).map(|(position, _)| *position as usize);
+        places.map(|k| grid.center(k % grid.width, k / grid.width))
     }
 
     /// Is more than the price of a plane lost when another one stands for this one?
@@ -140,7 +173,7 @@ mod tests {
     #[test]
     fn a_copy_falls_and_what_reaches_farther_or_says_more_stays() {
         let roof = || support(100..200, 0.5);
-        let stays = |planes: &[Support]| not_dominated(planes);
+        let stays = |planes: &[Support]| not_dominated(&planes.iter().collect::<Vec<_>>());
         assert_eq!(stays(&[support(120..180, 0.4), roof()]), [false, true]);
         assert_eq!(stays(&[roof(), roof()]), [true, false], "of two the first");
         assert_eq!(stays(&[roof(), support(190..210, 0.4)]), [true, true]);
@@ -154,6 +187,6 @@ mod tests {
         let halves = [support(0..60, 0.5), support(60..120, 0.5)];
         let both = support(5..115, 0.49);
         let [first, second] = halves;
-        assert_eq!(not_dominated(&[first, both, second]), [true; 3]);
+        assert_eq!(not_dominated(&[&first, &both, &second]), [true; 3]);
     }
 }

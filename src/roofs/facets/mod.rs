@@ -6,6 +6,7 @@
 //! ```text
 //! input             the results of the stages before
 //! dominated         planes that a stronger one explains are left out
+//! refitting         planes fitted to the points of a cloud that speak for them
 //! borders           border lines, the cells between them, and what a border costs
 //! evidence          the data term: photo-consistency and lines for each plane over each cell
 //! islands           patches too small to be a facet or a hole
@@ -35,6 +36,7 @@ mod islands;
 mod outlines;
 mod point_cloud;
 mod reconstruct;
+mod refitting;
 mod register;
 mod verification;
 

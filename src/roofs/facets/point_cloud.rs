@@ -28,6 +28,7 @@ use std::sync::Arc;
 use nalgebra::{Point2, Vector2};
 
 use super::input::PlacedCloud;
+use super::refitting::SurfaceHeight;
 use crate::base::evidence::{EvidenceTerm, POINT_CLOUD};
 use crate::base::geometry::Plane;
 use crate::base::math::{exp, hypot, larger, ln, normal_density};
@@ -115,6 +116,19 @@ impl CloudEvidence {
             plane: *plane,
             sigma_m: larger(hypot(self.cloud.accuracy_m, place), LEAST_SIGMA_M),
         }
+    }
+
+    /// The height of the point nearest to a position, of which there is one every so many metres.
+    pub(super) fn height_at(&self, p: &Point2<f64>, spacing: f64) -> Option<SurfaceHeight> {
+        let (column, row) = self.grid.cell(p)?;
+        let point = *self.nearest.get(row * self.grid.width + column)? as usize;
+        let p = self.cloud.points.get(point)?;
+        Some(SurfaceHeight {
+            at: p.xy(),
+            z: p.z,
+            sigma_m: larger(self.cloud.accuracy_m, LEAST_SIGMA_M),
+            independent: self.cloud.params.independent_per_m2 * spacing * spacing,
+        })
     }
 
     /// What it says of a facet.
