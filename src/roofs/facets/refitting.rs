@@ -1,7 +1,7 @@
 //! Planes fitted to the points of a cloud that agree with them, before borders are sought.
 //!
-//! A group has the plane of its lines, as far apart and as certain as these are: a short one errs by
-//! degrees, and a flat roof comes in as many planes as it has such lines. Where a cloud tells the
+//! A group has the plane of its lines, as far apart and as certain as these are: a short one errs
+//! by degrees, and a flat roof comes in as many planes as it has such lines. Where a cloud tells the
 //! heights between them, the plane is fitted to all that speak for it and to the ends of its lines,
 //! with Cauchy's loss, for chimneys and dormers are no part of it. What is found competes with the
 //! plane that it was found from, which may be that of a smaller face.
@@ -39,29 +39,24 @@ pub(super) fn refitted_groups(
     input: &GroupingInput,
     params: &RoofParams,
 ) -> Vec<PlaneGroup> {
-    let refitted = map(
-        planes,
-        |_,
-         SupportedPlane {
-             hypothesis,
-             support,
-         }| {
-            let group = &hypothesis.group;
-            let spacing = columns_apart(grid) as f64 * grid.step;
-            let points = support.places(grid);
-            let points = points.filter_map(|p| cloud.height_at(&p, spacing));
-            let ends = line_ends(group, input, params.coplanar_distance_m);
-            let heights: Vec<SurfaceHeight> = points.chain(ends).collect();
-            Some(PlaneGroup {
-                plane: fitted_plane(&heights, &group.plane, loss)?,
-                ..group.clone()
-            })
-        },
-    );
+    let loss = Loss::Cauchy(params.refine.loss_sigmas);
+    let spacing = columns_apart(grid) as f64 * grid.step;
+    let refitted = map(planes, |_, supported| {
+        let group = &supported.hypothesis.group;
+        let places = supported.support.places(grid);
+        let points = places.filter_map(|p| cloud.height_at(&p, spacing));
+        let ends = line_ends(group, input, params.coplanar_distance_m);
+        let heights: Vec<SurfaceHeight> = points.chain(ends).collect();
+        Some(PlaneGroup {
+            plane: fitted_plane(&heights, &group.plane, loss)?,
+            ..group.clone()
+        })
+    });
     refitted.into_iter().flatten().collect()
 }
 
-/// The ends of a group's lines, with what gutters and caps of ridges add to their covariance, metres.
+/// The ends of a group's lines, with what gutters and caps of ridges add to their covariance,
+/// metres.
 fn line_ends(
     group: &PlaneGroup,
     input: &GroupingInput,
