@@ -1,10 +1,10 @@
 //! Planes fitted to the points of a cloud that agree with them, before borders are sought.
 //!
 //! A group has the plane of its lines, as far apart and as certain as these are: a short one errs
-//! by degrees, and a flat roof comes in as many planes as it has such lines. Where a cloud tells the
-//! heights between them, the plane is fitted to all that speak for it and to the ends of its lines,
-//! with Cauchy's loss, for chimneys and dormers are no part of it. What is found competes with the
-//! plane that it was found from, which may be that of a smaller face.
+//! by degrees, and a flat roof comes in as many planes as it has such lines. Where a cloud tells
+//! the heights between them, the plane is fitted to all that speak for it and to the ends of its
+//! lines, with Cauchy's loss, for chimneys and dormers are no part of it. What is found competes
+//! with the plane that it was found from, which may be that of a smaller face.
 
 use nalgebra::{Matrix1x3, Point2, Point3, Vector1, Vector3};
 
