@@ -75,6 +75,10 @@ pub(super) fn adjust(
     let facets: Vec<&Facet> = old.iter().map(|f| &f.facet).collect();
     let new = adjust_to_statements(scene, &facets, &stated.statements, &earlier, params)
         .ok_or(NotApplied::NotAdjusted)?;
+    // A facet that is turned inside out lies over its neighbours.
+    if new.iter().any(|facet| facet.plan().signed_area() <= 0.0) {
+        return Err(NotApplied::WouldNotClose);
+    }
     let new = new.into_iter().zip(old);
     let new = new.map(|(facet, of)| DraftFacet {
         facet,
