@@ -10,7 +10,7 @@ use crate::base::math;
 use crate::base::params::{Correction, FacetPlace, RefineParams};
 use crate::orienting::scene::Scene;
 use crate::roofs::buildings::{Statement, adjust_to_statements};
-use crate::roofs::model::Facet;
+use crate::roofs::model::{Facet, is_simple};
 
 /// Standard deviation of slopes and directions that are stated, metres over a few metres.
 const STATED_SIGMA_M: f64 = 2e-3;
@@ -75,8 +75,7 @@ pub(super) fn adjust(
     let facets: Vec<&Facet> = old.iter().map(|f| &f.facet).collect();
     let new = adjust_to_statements(scene, &facets, &stated.statements, &earlier, params)
         .ok_or(NotApplied::NotAdjusted)?;
-    // A facet that is turned inside out lies over its neighbours.
-    if new.iter().any(|facet| facet.plan().signed_area() <= 0.0) {
+    if new.iter().any(is_folded) {
         return Err(NotApplied::WouldNotClose);
     }
     let new = new.into_iter().zip(old);
@@ -86,6 +85,12 @@ pub(super) fn adjust(
     });
     let new = new.collect();
     draft.rebuild(stated.house, new)
+}
+
+/// Does an outline cross itself, or run the wrong way round?
+fn is_folded(facet: &Facet) -> bool {
+    let plan = facet.plan();
+    plan.signed_area() <= 0.0 || plan.rings.iter().any(|ring| !is_simple(ring))
 }
 
 /// Remembers what an applied correction states.

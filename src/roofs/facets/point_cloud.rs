@@ -28,7 +28,6 @@ use std::sync::Arc;
 use nalgebra::{Point2, Vector2};
 
 use super::input::PlacedCloud;
-use super::refitting::SurfaceHeight;
 use crate::base::evidence::{EvidenceTerm, POINT_CLOUD};
 use crate::base::geometry::Plane;
 use crate::base::math::{exp, hypot, larger, ln, normal_density};
@@ -58,6 +57,19 @@ pub(super) struct CloudEvidence {
     nearest: Vec<u32>,
     /// How likely each point is where no roof is, per metre of height.
     elsewhere: Vec<f64>,
+}
+
+/// A height of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SurfaceHeight {
+    /// Plan position, metres.
+    pub at: Point2<f64>,
+    /// Metres.
+    pub z: f64,
+    /// Standard deviation, metres.
+    pub sigma_m: f64,
+    /// Neighbouring heights share their errors: as so many independent ones it counts.
+    pub independent: f64,
 }
 
 /// What a cloud says of one plane.

@@ -9,7 +9,7 @@
 use nalgebra::{Matrix1x3, Point2, Point3, Vector1, Vector3};
 
 use super::dominated::{SupportedPlane, columns_apart};
-use super::point_cloud::CloudEvidence;
+use super::point_cloud::{CloudEvidence, SurfaceHeight};
 use crate::base::execution::map;
 use crate::base::geometry::Plane;
 use crate::base::least_squares::{Loss, NormalEquations, Stop, fit};
@@ -17,19 +17,6 @@ use crate::base::math::hypot;
 use crate::base::params::RoofParams;
 use crate::planes::grouping::{GroupingInput, PlaneGroup};
 use crate::planes::photoconsistency::PlanGrid;
-
-/// A height of a surface.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SurfaceHeight {
-    /// Plan position, metres.
-    pub at: Point2<f64>,
-    /// Metres.
-    pub z: f64,
-    /// Standard deviation, metres.
-    pub sigma_m: f64,
-    /// Neighbouring heights share their errors: as so many independent ones it counts.
-    pub independent: f64,
-}
 
 /// The groups in the planes that fit the points of a cloud best.
 pub(super) fn refitted_groups(

@@ -24,8 +24,8 @@ use crate::roofs::model::{Facet, SideSupport};
 const UNKNOWN_SIGMA_M: f64 = 0.1;
 /// No corner is known better than that, metres: what is stated by hand weighs more.
 const LEAST_SIGMA_M: f64 = 0.05;
-/// What holds exactly lets a corner that goes a metre only bend its way there: short steps, of which
-/// each gains little.
+/// What holds exactly lets a corner that goes a metre only bend its way there: short steps, of
+/// which each gains little.
 const STOP: Stop = Stop {
     steps: 400,
     least_gain: 1e-9,
