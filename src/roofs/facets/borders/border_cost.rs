@@ -96,13 +96,6 @@ struct CellBorder {
 impl CellBorder {
     /// Share of its full cost between two planes.
     fn share(&self, left: Option<&Plane>, right: Option<&Plane>) -> f64 {
-        if let (Some(a), Some(b)) = (left, right)
-            && self.meet(a, b)
-            && are_one_plane(a, b)
-        {
-            // A seam, a stain or a row of panels: no line makes a border of it.
-            return 1.0;
-        }
         let sides = [(left, right, -1.0), (right, left, 1.0)];
         let mut supports = [1.0; 2];
         for (support, (plane, beyond, side)) in supports.iter_mut().zip(sides) {
@@ -112,7 +105,7 @@ impl CellBorder {
             }
         }
         let crease = match (left, right) {
-            (Some(a), Some(b)) if self.meet(a, b) => CREASE,
+            (Some(a), Some(b)) if self.is_crease(a, b) => CREASE,
             _ => 1.0,
         };
         supports.into_iter().fold(crease, smaller)
@@ -136,10 +129,10 @@ impl CellBorder {
         Vector2::new(-along.y, along.x)
     }
 
-    /// Are two planes equally high here?
-    fn meet(&self, a: &Plane, b: &Plane) -> bool {
+    /// Do two planes meet here at an angle?
+    fn is_crease(&self, a: &Plane, b: &Plane) -> bool {
         let apart = (self.ends).map(|p| (a.z_at(p.x, p.y) - b.z_at(p.x, p.y)).abs());
-        apart.iter().all(|apart| *apart < MEETING_HEIGHT_M)
+        apart.iter().all(|apart| *apart < MEETING_HEIGHT_M) && !are_one_plane(a, b)
     }
 
     /// How much of the border is the top of a slope that ends in the air, 0 to 1.

@@ -29,7 +29,13 @@ pub(crate) fn charged_length(
     let planes = planes.map(|(plane, beyond, outwards)| {
         plane.map(|plane| BoundedPlane::new(&side, plane, beyond, &outwards))
     });
-    let meeting = Meeting::new(&side, left, right);
+    let crease = match (left, right) {
+        (Some(left), Some(right)) if !are_one_plane(left, right) => {
+            let apart = side.height(left).minus(side.height(right));
+            apart.within(-MEETING_HEIGHT_M, MEETING_HEIGHT_M)
+        }
+        _ => NOWHERE,
+    };
     let parts = (length / PART_M).ceil().max(1.0);
     let at = |k: usize| length * (k as f64 / parts);
     let part = |k: usize| {
@@ -42,7 +48,7 @@ pub(crate) fn charged_length(
             let along = lines.iter().flat_map(|l| side.along_line(l, plane.height));
             along.filter(|s| meet(*s, part)).collect()
         });
-        charged(part, &meeting, &planes, &on_line)
+        charged(part, crease, &planes, &on_line)
     };
     (0..parts as usize).map(part).sum()
 }
@@ -55,23 +61,19 @@ const PART_M: f64 = 2.0;
 /// supports it most.
 fn charged(
     part: Stretch,
-    meeting: &Meeting,
+    crease: Stretch,
     planes: &[Option<BoundedPlane>; 2],
     on_line: &[Vec<Stretch>; 2],
 ) -> f64 {
     let goes_on = planes.iter().flatten().map(|p| p.goes_on);
     let supports = on_line.iter().flatten().copied();
-    let changes = supports.chain(goes_on).chain([meeting.place]).flatten();
+    let changes = supports.chain(goes_on).chain([crease]).flatten();
     let within = changes.filter(|s| holds(part, *s));
     let mut places: Vec<f64> = within.chain(part).collect();
     places.sort_by(f64::total_cmp);
     let stretch = |ends: &[f64]| {
         let middle = 0.5 * (ends[0] + ends[1]);
-        let mut share = match holds(meeting.place, middle) {
-            true if meeting.is_one_plane => return ends[1] - ends[0],
-            true => CREASE,
-            false => 1.0,
-        };
+        let mut share = if holds(crease, middle) { CREASE } else { 1.0 };
         for (plane, on_line) in planes.iter().zip(on_line) {
             if let Some(plane) = plane.as_ref()
                 && on_line.iter().any(|s| holds(*s, middle))
@@ -143,26 +145,6 @@ impl Side {
             let at_height = above.within(-LINE_HEIGHT, LINE_HEIGHT);
             common(common(beside, place.within(low, high)), at_height)
         })
-    }
-}
-
-/// Where the planes to both hands of a side are equally high.
-struct Meeting {
-    place: Stretch,
-    /// No line makes a border of it then.
-    is_one_plane: bool,
-}
-
-impl Meeting {
-    fn new(side: &Side, left: Option<&Plane>, right: Option<&Plane>) -> Self {
-        let planes = left.zip(right);
-        Self {
-            place: planes.map_or(NOWHERE, |(left, right)| {
-                let apart = side.height(left).minus(side.height(right));
-                apart.within(-MEETING_HEIGHT_M, MEETING_HEIGHT_M)
-            }),
-            is_one_plane: planes.is_some_and(|(left, right)| are_one_plane(left, right)),
-        }
     }
 }
 
