@@ -30,6 +30,7 @@ impl StageDefinition for Groups {
         "roof.max_facet_depth_m",
         "roof.extension_m",
         "roof.min_height_m",
+        "roof.refine.loss_sigmas",
         "point_cloud",
     ];
     const NEEDS: &'static [Stage] = &[

@@ -327,11 +327,14 @@ impl Verifier<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+
     use crate::base::geometry::Plane;
     use crate::base::ids::ProposalOrigin;
+    use crate::base::params::PointCloudParams;
     use crate::planes::grouping::{GroupedPlanes, ProposedPlane};
     use crate::planes::rendered_planes::{TexturedPlane, scene};
-    use crate::roofs::facets::{FacetInput, competing_planes};
+    use crate::roofs::facets::{FacetInput, PlacedCloud, competing_planes};
     use crate::roofs::testing::line;
     use nalgebra::{Point3, Vector3};
 
@@ -357,7 +360,7 @@ mod tests {
 
     /// The facets of a flat roof of which one eave was matched, without a half-plane, with planes
     /// that are proposed for it.
-    fn facets(proposals: &[ProposedPlane]) -> Vec<Facet> {
+    fn facets(proposals: &[ProposedPlane], cloud: Option<&Arc<PlacedCloud>>) -> Vec<Facet> {
         let on_roof = |x: f64, y: f64| x.abs() < 4.0 && y.abs() < 3.0;
         let textured = |plane, exists| TexturedPlane {
             plane,
@@ -377,7 +380,7 @@ mod tests {
             segments: &[],
             grouped: &GroupedPlanes::new(&lines, &[], true, proposals, &ground, &params),
             ground: &ground,
-            cloud: None,
+            cloud,
         };
         let (competing, _) = competing_planes(&scene, &evidence, &params).unwrap();
         competing.map_or_else(Vec::new, |competing| {
@@ -387,14 +390,39 @@ mod tests {
 
     #[test]
     fn a_rectangle_is_a_facet_where_half_planes_are_absent() {
-        assert!(facets(&[]).is_empty());
+        assert!(facets(&[], None).is_empty());
         // The wrong ones come first, and lose.
         let proposed = [rectangle(7, 7.5), rectangle(8, 2.5), rectangle(9, ROOF_Z)];
-        let found = facets(&proposed);
+        let found = facets(&proposed, None);
         assert_eq!(found.len(), 1, "{found:?}");
         assert_eq!(found[0].proposals, [ProposalOrigin::Rectangle(9)]);
         assert!((found[0].plane.z_at(0.0, 0.0) - ROOF_Z).abs() < 0.05);
         let covered = |p: &Point3<f64>| p.x.abs() < 4.5 && p.y.abs() < 3.5;
         assert!(found[0].outer.iter().all(covered), "{:?}", found[0].outer);
+    }
+
+    #[test]
+    fn a_plane_is_fitted_to_the_points_of_a_cloud() {
+        // Its plane is a decimetre off at both ends.
+        let normal = Vector3::new(0.025, 0.0, 1.0);
+        let tilted = Plane::from_point_normal(&Point3::new(0.0, 0.0, ROOF_Z), &normal);
+        let mut proposed = rectangle(9, ROOF_Z);
+        proposed.plane = tilted.expect("a normal");
+        (proposed.ring.iter_mut()).for_each(|p| *p = proposed.plane.lift(p.x, p.y));
+        let places = (-40..40).flat_map(|x| (-30..30).map(move |y| (x, y)));
+        let point = |(x, y)| Point3::new(0.1 * f64::from(x), 0.1 * f64::from(y), ROOF_Z);
+        let cloud = Arc::new(PlacedCloud {
+            points: places.map(point).collect(),
+            accuracy_m: 0.05,
+            belongs: 0.9,
+            params: PointCloudParams::default(),
+        });
+        let off = |cloud| {
+            let found = facets(std::slice::from_ref(&proposed), cloud);
+            let heights = found[0].outer.iter().map(|p| (p.z - ROOF_Z).abs());
+            heights.fold(0.0, f64::max)
+        };
+        assert!(off(None) > 0.08);
+        assert!(off(Some(&cloud)) < 0.02);
     }
 }

@@ -16,6 +16,7 @@ use crate::base::least_squares::{Loss, NormalEquations, Stop, fit};
 use crate::base::math::hypot;
 use crate::base::params::RoofParams;
 use crate::planes::grouping::{GroupingInput, PlaneGroup};
+use crate::planes::half_planes::is_wall;
 use crate::planes::photoconsistency::PlanGrid;
 
 /// The groups in the planes that fit the points of a cloud best.
@@ -34,10 +35,12 @@ pub(super) fn refitted_groups(
         let points = places.filter_map(|p| cloud.height_at(&p, spacing));
         let ends = line_ends(group, input, params.coplanar_distance_m);
         let heights: Vec<SurfaceHeight> = points.chain(ends).collect();
-        Some(PlaneGroup {
-            plane: fitted_plane(&heights, &group.plane, loss)?,
+        let plane = fitted_plane(&heights, &group.plane, loss)?;
+        let group = || PlaneGroup {
+            plane,
             ..group.clone()
-        })
+        };
+        (!is_wall(&plane)).then(group)
     });
     refitted.into_iter().flatten().collect()
 }

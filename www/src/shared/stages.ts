@@ -101,7 +101,7 @@ export const STAGES = [
     title: "Groups",
     section: "B99 4.2",
     methods: ["lines", "combined", "coplanar", "adjacency"],
-    reads: ["roof.coplanar_angle_deg", "roof.coplanar_distance_m", "roof.min_facet_depth_m", "roof.max_facet_depth_m", "roof.extension_m", "roof.min_height_m", "point_cloud"],
+    reads: ["roof.coplanar_angle_deg", "roof.coplanar_distance_m", "roof.min_facet_depth_m", "roof.max_facet_depth_m", "roof.extension_m", "roof.min_height_m", "roof.refine.loss_sigmas", "point_cloud"],
   },
   {
     name: "facets",
