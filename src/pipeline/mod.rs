@@ -305,7 +305,9 @@ impl Run {
             point_cloud: (self.results.dense.as_ref())
                 .and_then(|found| found.trace.point_cloud.as_ref()),
         };
-        let report = report::report(&self.scene, &self.params, &self.summaries, known, seconds);
+        let uncovered = (self.results.model.as_ref()).map_or(&[][..], |found| &found.uncovered);
+        let beside = (known, uncovered);
+        let report = report::report(&self.scene, &self.params, &self.summaries, beside, seconds);
         files.push(("report.json".into(), report));
         files
     }

@@ -10,6 +10,7 @@ use crate::base::params::Params;
 use crate::orienting::known::KnownComparison;
 use crate::orienting::scene::{Scene, ViewAdjustment, ViewShift};
 use crate::planes::dense::CloudComparison;
+use crate::roofs::buildings::UncoveredRoof;
 use crate::roofs::facets::RegisterTrace;
 
 /// The content of `report.json`.
@@ -25,6 +26,8 @@ struct Report<'a> {
     /// What was known beforehand, compared with the images.
     #[serde(skip_serializing_if = "KnownReport::is_empty")]
     known: KnownReport<'a>,
+    /// Where a roof may be and the model has none, local frame.
+    uncovered: &'a [UncoveredRoof],
     /// Warnings of the readers; those of the stages stand with them.
     warnings: &'a [String],
     params: &'a Params,
@@ -67,7 +70,7 @@ pub(crate) fn report(
     scene: &Scene,
     params: &Params,
     stages: &[StageSummary],
-    known: KnownReport,
+    (known, uncovered): (KnownReport, &[UncoveredRoof]),
     seconds: &[(Stage, f64)],
 ) -> Vec<u8> {
     let views = scene.views.iter().enumerate().map(|(i, view)| ReportView {
@@ -86,6 +89,7 @@ pub(crate) fn report(
         coordinates: scene.survey.describe(),
         stages,
         known,
+        uncovered,
         warnings: &scene.warnings,
         params,
         seconds: by_stage,

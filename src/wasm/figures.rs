@@ -289,6 +289,13 @@ impl Session {
         }))
     }
 
+    /// Where a roof may be and the model has none, the largest first; `null` before the last stage.
+    #[wasm_bindgen(unchecked_return_type = "UncoveredRoof[] | null")]
+    pub fn uncovered(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().model.as_ref();
+        to_js(&found.map(|r| &r.uncovered))
+    }
+
     /// The points of interest of all views, once for each set of parameters.
     fn detect_points(&mut self) -> Result<(), JsValue> {
         if self.points.is_none() {

@@ -5,7 +5,8 @@ use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
 use crate::results::texture::{TextureTrace, TexturedModel, texture_model};
-use crate::roofs::model::BuildingWalls;
+use crate::roofs::buildings::{UncoveredRoof, uncovered_roofs};
+use crate::roofs::model::{BuildingWalls, RoofModel};
 use crate::roofs::walls::place_walls;
 
 /// Textures and walls of the model.
@@ -17,6 +18,8 @@ pub struct Found {
     pub trace: TextureTrace,
     /// For each building where its walls stand.
     pub walls: Vec<BuildingWalls>,
+    /// Where a roof may be and the model has none.
+    pub uncovered: Vec<UncoveredRoof>,
 }
 
 pub(super) struct Model;
@@ -37,6 +40,7 @@ impl StageDefinition for Model {
             value,
             trace,
             walls: place_walls(scene, model, before.ground.as_ref()),
+            uncovered: uncovered(model, before),
         })
     }
 
@@ -44,8 +48,23 @@ impl StageDefinition for Model {
         let faces = || found.value.faces.iter().flatten();
         let textured = faces().filter(|f| f.view.is_some()).count();
         Findings {
-            counts: vec![("faces", faces().count()), ("textured faces", textured)],
+            counts: vec![
+                ("faces", faces().count()),
+                ("textured faces", textured),
+                ("uncovered roofs", found.uncovered.len()),
+            ],
             warnings: Vec::new(),
         }
     }
+}
+
+fn uncovered(model: &RoofModel, before: &Results) -> Vec<UncoveredRoof> {
+    let facets = before.facets.as_ref();
+    let rejected = facets.map_or(&[][..], |found| &found.trace.facets.rejected);
+    let dense = before.dense.as_ref();
+    uncovered_roofs(
+        model,
+        rejected,
+        dense.map(|found| (&found.value[..], &found.trace)),
+    )
 }

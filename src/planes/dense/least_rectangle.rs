@@ -6,7 +6,7 @@ use crate::base::geometry::{Plane, bounds};
 
 /// The least rectangle in plan around some points and a margin, one side along the contour lines
 /// of a plane or along x.
-pub(super) fn least_rectangle(
+pub(crate) fn least_rectangle(
     points: &[Point2<f64>],
     margin: f64,
     plane: &Plane,

@@ -21,11 +21,11 @@ mod surface_class;
 mod sweep;
 
 pub use cloud::{CloudComparison, CloudPlane};
+pub(crate) use least_rectangle::least_rectangle;
 pub use patch::Patch;
 pub use surface_class::{SurfaceClass, SurfaceEvidence};
 
 use self::cloud::{Matched, compare};
-use self::least_rectangle::least_rectangle;
 use self::patch_match::PatchGrid;
 use self::region::Region;
 

@@ -5,6 +5,7 @@
 //! refinement   the stage: closed buildings -> refined ones
 //! refine       adjusts the wireframe of each building to the image edges of all views
 //! parapets     roofs below the parapets that bound them
+//! uncovered    where a roof may be and the model has none
 //! model_lines  lines that the finished model contradicts, duplicates and new lines
 //! ```
 //!
@@ -15,6 +16,7 @@ mod parapets;
 mod rectangles;
 mod refine;
 mod refinement;
+mod uncovered;
 
 pub use model_lines::VerifiedLines;
 pub use parapets::Parapet;
@@ -26,3 +28,4 @@ pub use refine::{
     TestedRelation, adjust_to_statements, cut_back_at_gaps, refine_roofs,
 };
 pub use refinement::{RefinementTrace, UnrefinedFacets, refine_buildings};
+pub use uncovered::{UncoveredRoof, WhyUncovered, uncovered_roofs};

@@ -29,6 +29,8 @@ const TEXTS = {
   group: "group:index",
   facet: "facet:index",
   rejectedFacet: "withdrawn:index",
+  /** A place where a roof may be and the model has none. */
+  uncoveredRoof: "uncovered:index",
   /** A surface of the model, which is read back as its facet. */
   surface: "facet:facet",
   /** What refinement made of a building. */

@@ -151,6 +151,7 @@ function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
     return (
       <>
         <p class="muted">Click a facet of the model to correct it.</p>
+        <Uncovered />
         <Drawn facets={facets} index={null} />
       </>
     );
@@ -200,6 +201,26 @@ function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
       <Parallel key={index} facet={facet} />
       <Drawn facets={facets} index={index} />
     </fieldset>
+  );
+}
+
+/** A place where a roof may be and the model has none becomes a facet. */
+function Uncovered() {
+  const picked = selection.value;
+  const roof = picked?.kind === "uncoveredRoof" ? mainResults.value.uncovered?.[picked.index] : undefined;
+  if (roof === undefined) {
+    return null;
+  }
+  const add = () => {
+    const outline = roof.outline.map((p) => sum(p, origin()));
+    void correct({ correction: "add_facet", outline }, outline[0] ?? null);
+  };
+  return (
+    <div class="row wrap">
+      <button type="button" disabled={isBusy.value} onClick={add}>
+        Add a facet here ({roof.area_m2.toFixed(0)} m²)
+      </button>
+    </div>
   );
 }
 
