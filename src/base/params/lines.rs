@@ -227,8 +227,6 @@ pub struct Lines3dParams {
     /// Scale c of the Cauchy loss, standard deviations. Assumption: the usual 2.4 (95 %
     /// efficiency).
     pub loss_scale: f64,
-    /// Most Levenberg-Marquardt steps. Assumption: a good start converges in fewer than ten.
-    pub max_iterations: usize,
     /// Residual, in standard deviations, beyond which a segment is not of this line. Assumption:
     /// rather too large, for residuals are a term of the line's evidence.
     pub max_residual: f64,
@@ -261,7 +259,6 @@ impl Default for Lines3dParams {
             position_floor_px: 0.1,
             edge_floor_px: 0.15,
             loss_scale: 2.4,
-            max_iterations: 20,
             max_residual: 8.0,
             max_sigma_px: 3.0,
             least_nats: 1.1,

@@ -80,11 +80,7 @@ pub fn fit_line_on(
         .collect();
     let loss = Loss::Cauchy(params.loss_scale);
     let linearised = |line: &Segment3| normal_equations(&whitened, constraints, line, loss);
-    let stop = Stop {
-        steps: params.max_iterations,
-        ..Stop::default()
-    };
-    let (line, equations) = fit(*initial, linearised, displaced, stop)?;
+    let (line, equations) = fit(*initial, linearised, displaced, Stop::default())?;
     let across = line_frame(&line.direction());
     let residuals = whitened
         .iter()

@@ -56,31 +56,42 @@ pub fn uncovered_roofs(
     rejected: &[RejectedFacet],
     surfaces: Option<(&[DensePlane], &DenseTrace)>,
 ) -> Vec<UncoveredRoof> {
-    let mut found = of_rejected(model, rejected);
-    let known: Vec<Polygon> = found.iter().map(|roof| plan(&roof.outline)).collect();
-    let of_surfaces = (surfaces.into_iter())
-        .flat_map(|surfaces| of_surfaces(model, surfaces))
-        .filter(|roof| !is_among(&known, &mean_point(&roof.outline)));
-    found.extend(of_surfaces);
+    let mut covered: Vec<Polygon> = model.facets.iter().map(|facet| facet.plan()).collect();
+    let of_rejected = of_rejected(rejected);
+    let surfaces = surfaces.map(|surfaces| of_surfaces(&covered, surfaces));
+    let mut found = surfaces.unwrap_or_default();
+    for roof in &mut found {
+        let middle = mean_point(&roof.outline).xy();
+        let tried = of_rejected
+            .iter()
+            .find(|one| plan(&one.outline).contains(&middle));
+        roof.why = tried.map_or(WhyUncovered::NoPlane, |one| one.why.clone());
+    }
+    covered.extend(found.iter().map(|roof| plan(&roof.outline)));
+    // Several planes at one place are one roof: the largest.
+    for roof in of_rejected {
+        if !is_covered(&covered, &mean_point(&roof.outline).xy()) {
+            covered.push(plan(&roof.outline));
+            found.push(roof);
+        }
+    }
     found.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
     found
 }
 
-/// Rejected facets that may be roofs. Several planes at one place are one roof: the largest.
-fn of_rejected(model: &RoofModel, rejected: &[RejectedFacet]) -> Vec<UncoveredRoof> {
-    let may_be_roof = |(index, facet): (usize, &RejectedFacet)| {
-        let FacetRejection::Improbable { evidence } = &facet.reason else {
+/// Rejected facets that may be roofs, the largest first.
+fn of_rejected(rejected: &[RejectedFacet]) -> Vec<UncoveredRoof> {
+    let may_be_roof = |(facet, rejected): (usize, &RejectedFacet)| {
+        let FacetRejection::Improbable { evidence } = &rejected.reason else {
             return None;
         };
+        let evidence = evidence.clone();
         let probability = evidence.probability();
         (probability >= ASKED_PROBABILITY).then(|| UncoveredRoof {
-            outline: facet.outline.clone(),
-            area_m2: plan(&facet.outline).area(),
+            outline: rejected.outline.clone(),
+            area_m2: plan(&rejected.outline).area(),
             probability,
-            why: WhyUncovered::Rejected {
-                facet: index,
-                evidence: evidence.clone(),
-            },
+            why: WhyUncovered::Rejected { facet, evidence },
         })
     };
     let mut candidates: Vec<UncoveredRoof> = rejected
@@ -89,48 +100,40 @@ fn of_rejected(model: &RoofModel, rejected: &[RejectedFacet]) -> Vec<UncoveredRo
         .filter_map(may_be_roof)
         .collect();
     candidates.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
-    let mut taken: Vec<Polygon> = model.facets.iter().map(|facet| facet.plan()).collect();
-    candidates.retain(|roof| {
-        let is_open = !is_among(&taken, &mean_point(&roof.outline));
-        taken.extend(is_open.then(|| plan(&roof.outline)));
-        is_open
-    });
     candidates
 }
 
 /// Surfaces of dense matching that are buildings, where no facet covers them. Windows reach over
 /// the borders of roofs: only places with open ones all around count, and what touches these.
 fn of_surfaces(
-    model: &RoofModel,
+    facets: &[Polygon],
     (planes, trace): (&[DensePlane], &DenseTrace),
 ) -> Vec<UncoveredRoof> {
-    let facets: Vec<Polygon> = model.facets.iter().map(|facet| facet.plan()).collect();
     let cell = |patch: &usize| {
         let at = trace.patches.get(*patch)?.middle / trace.spacing_m;
         Some([at.x, at.y].map(|v| v.floor() as i64))
     };
-    let open = |plane: &DensePlane| -> BTreeSet<[i64; 2]> {
-        (plane.patches.iter())
-            .filter(|patch| !is_covered(&facets, &trace.patches[**patch].middle))
-            .filter_map(cell)
-            .collect()
-    };
+    let middle = |[x, y]: [i64; 2]| Point2::new(x as f64 + 0.5, y as f64 + 0.5) * trace.spacing_m;
     let is_building = |plane: &&DensePlane| plane.class.building >= BUILDING_PROBABILITY;
     let buildings: Vec<&DensePlane> = planes.iter().filter(is_building).collect();
-    let of_planes: Vec<BTreeSet<[i64; 2]>> = buildings.iter().map(|plane| open(plane)).collect();
+    let open = |plane: &&DensePlane| -> BTreeSet<[i64; 2]> {
+        let cells = plane.patches.iter().filter_map(cell);
+        cells
+            .filter(|cell| !is_covered(facets, &middle(*cell)))
+            .collect()
+    };
+    let of_planes: Vec<BTreeSet<[i64; 2]>> = buildings.iter().map(open).collect();
     let of_all: BTreeSet<[i64; 2]> = of_planes.iter().flatten().copied().collect();
     let is_inner = |cell: &[i64; 2]| around(cell).all(|next| of_all.contains(&next));
     let mut found = Vec::new();
-    for (plane, open) in buildings.into_iter().zip(&of_planes) {
+    for (DensePlane { plane, class, .. }, open) in buildings.into_iter().zip(&of_planes) {
         for part in connected(open.iter().copied().filter(is_inner).collect(), open) {
-            let middle =
-                |[x, y]: &[i64; 2]| Point2::new(*x as f64 + 0.5, *y as f64 + 0.5) * trace.spacing_m;
-            let middles: Vec<Point2<f64>> = part.iter().map(middle).collect();
-            let corners = least_rectangle(&middles, 0.5 * trace.spacing_m, &plane.plane);
+            let middles: Vec<Point2<f64>> = part.iter().copied().map(middle).collect();
+            let corners = least_rectangle(&middles, 0.5 * trace.spacing_m, plane);
             found.push(UncoveredRoof {
-                outline: corners.map(|p| plane.plane.lift(p.x, p.y)).to_vec(),
+                outline: corners.map(|p| plane.lift(p.x, p.y)).to_vec(),
                 area_m2: part.len() as f64 * trace.spacing_m * trace.spacing_m,
-                probability: plane.class.building,
+                probability: class.building,
                 why: WhyUncovered::NoPlane,
             });
         }
@@ -162,10 +165,6 @@ fn plan(ring: &[Point3<f64>]) -> Polygon {
     Polygon {
         rings: vec![ring.iter().map(Point3::xy).collect()],
     }
-}
-
-fn is_among(polygons: &[Polygon], p: &Point3<f64>) -> bool {
-    is_covered(polygons, &p.xy())
 }
 
 fn is_covered(polygons: &[Polygon], p: &Point2<f64>) -> bool {
@@ -265,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rejected_facet_stands_for_the_surface_below_it() {
+    fn a_surface_says_which_facet_was_rejected_there() {
         let rejected = |prior: f64| {
             let evidence = Evidence {
                 prior,
@@ -280,12 +279,14 @@ mod tests {
         let (planes, trace) = surface(0.8);
         let surfaces = || Some((&planes[..], &trace));
         let found = uncovered_roofs(&with(&[]), &rejected(-1.0), surfaces());
-        assert_eq!(found.len(), 1);
-        assert!(matches!(
-            found[0].why,
-            WhyUncovered::Rejected { facet: 0, .. }
-        ));
-        assert!((found[0].area_m2 - 32.0).abs() < 1e-9);
+        let is_rejected =
+            |roof: &UncoveredRoof| matches!(roof.why, WhyUncovered::Rejected { facet: 0, .. });
+        assert!(found.len() == 1 && is_rejected(&found[0]) && found[0].area_m2 > 59.0);
+        let alone = uncovered_roofs(&with(&[]), &rejected(-1.0), None);
+        assert!(alone.len() == 1 && is_rejected(&alone[0]));
+        assert!((alone[0].area_m2 - 32.0).abs() < 1e-9);
+        let covered = with(&[[[0.0, 0.0], [10.0, 6.0]]]);
+        assert!(uncovered_roofs(&covered, &rejected(-1.0), surfaces()).is_empty());
         let found = uncovered_roofs(&with(&[]), &rejected(-4.0), surfaces());
         assert_eq!(
             found[0].why,
