@@ -12,6 +12,7 @@
 //! detect             what kind of file it is
 //! unread             formats that are known but not read, and what to do instead
 //! reference          EPSG code of the coordinate reference system
+//! units              what coordinates of a system count: metres, feet, degrees
 //! sets               the files that together orient images, and their reader
 //! metric_frame       geocentric and geographic positions become a local metric frame
 //! ```
@@ -49,6 +50,7 @@ mod photograph_head;
 mod reference;
 mod sets;
 mod transverse_mercator;
+mod units;
 mod unread;
 
 pub(crate) use angles::EXACT_ROTATION;
@@ -70,4 +72,8 @@ pub use photograph_head::PhotographHead;
 pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};
 pub(crate) use transverse_mercator::TransverseMercator;
+pub use units::{
+    LinearUnit, PlanUnit, SystemUnits, height_unit_of_code, linear_unit_of_code, units_of,
+    units_of_code,
+};
 pub(crate) use unread::{UnreadFormat, of as unread_format};
