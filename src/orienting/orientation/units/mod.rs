@@ -10,7 +10,7 @@ mod text;
 
 use super::epsg_of;
 
-/// A unit of length.
+/// A unit of length; the metre unless another is stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearUnit {
     /// Metres of one.
@@ -56,6 +56,12 @@ const NAMED: [(&str, &str, f64); 11] = [
 /// Factors that differ by less than this share are one unit with other digits: the international
 /// foot and that of the US survey differ by 2e-6, and files state seven digits or more.
 const SAME_UNIT: f64 = 1e-7;
+
+impl Default for LinearUnit {
+    fn default() -> Self {
+        Self::METRE
+    }
+}
 
 impl LinearUnit {
     /// The metre.
