@@ -59,20 +59,13 @@ fn of_well_known_text(text: &str) -> Stated {
             _ if is_quoted => {}
             '[' => {
                 let name = text[word..i].trim();
-                if matches!(name, "UNIT" | "LENGTHUNIT") {
-                    if let Some(unit) = metres_in(&text[i + 1..]) {
-                        match (open.last(), open.len().checked_sub(2).map(|k| open[k])) {
-                            (Some(&system), _) if is_map(system) => stated.set_plan(unit),
-                            (Some(&"AXIS"), Some(system)) if is_map(system) => {
-                                stated.set_plan(unit);
-                            }
-                            (Some(&system), _) if is_vertical(system) => stated.set_height(unit),
-                            (Some(&"AXIS"), Some(system)) if is_vertical(system) => {
-                                stated.set_height(unit);
-                            }
-                            _ => {}
-                        }
-                    }
+                let is_unit = matches!(name, "UNIT" | "LENGTHUNIT");
+                if let Some(unit) = metres_in(&text[i + 1..]).filter(|_| is_unit) {
+                    let system = match open[..] {
+                        [.., system, "AXIS"] | [.., system] => system,
+                        [] => "",
+                    };
+                    stated.set(system, unit);
                 }
                 open.push(name);
                 word = i + 1;
@@ -89,12 +82,14 @@ fn of_well_known_text(text: &str) -> Stated {
 }
 
 impl Stated {
-    fn set_plan(&mut self, unit: LinearUnit) {
-        self.plan = self.plan.or(Some(PlanUnit::Length(unit)));
-    }
-
-    fn set_height(&mut self, unit: LinearUnit) {
-        self.height = self.height.or(Some(unit));
+    /// The first unit of each counts.
+    fn set(&mut self, system: &str, unit: LinearUnit) {
+        if is_map(system) {
+            self.plan = self.plan.or(Some(PlanUnit::Length(unit)));
+        }
+        if is_vertical(system) {
+            self.height = self.height.or(Some(unit));
+        }
     }
 }
 

@@ -113,7 +113,7 @@ impl GeoList {
 fn place_of(line: &str, units: &SystemUnits, grid: Option<TransverseMercator>) -> Option<GeoPlace> {
     let fields = fields(line);
     let is_number = |field: &&str| field.parse::<f64>().is_ok();
-    let name_end = (1..fields.len()).find(|&i| fields[i..].iter().all(|f| is_number(f)))?;
+    let name_end = (1..fields.len()).find(|&i| fields[i..].iter().all(is_number))?;
     let numbers = fields[name_end..].iter().map(|f| f.parse().ok());
     let numbers: Vec<f64> = numbers.collect::<Option<_>>()?;
     let number = |i: usize| numbers.get(i).copied().filter(|v| v.is_finite());

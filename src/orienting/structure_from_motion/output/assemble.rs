@@ -125,31 +125,29 @@ pub(in super::super) fn report(
         .collect();
     let rays_a_point = total as f64 / counts.points.max(1) as f64;
     let (frame, anchor, mut warnings) = frame_words(basis);
-    if rays_a_point < FEW_RAYS {
-        warnings.push(format!(
+    warnings.extend((rays_a_point < FEW_RAYS).then(|| {
+        format!(
             "only {rays_a_point:.1} photographs show a point on average: take more of them, with \
              more overlap"
-        ));
-    }
+        )
+    }));
     let cameras = cameras(block, names, covariance);
     warnings.extend(cameras.iter().filter_map(contradiction));
-    let (epsg, offset, control) = match basis {
+    let (epsg, unit_m, offset, control) = match basis {
         FrameBasis::Control {
             epsg,
+            unit,
             offset,
             points,
             ..
-        } => (*epsg, *offset, points.clone()),
-        _ => (None, [0.0; 3], Vec::new()),
+        } => (*epsg, unit.metres, *offset, points.clone()),
+        _ => (None, 1.0, [0.0; 3], Vec::new()),
     };
     OrientReport {
         frame,
         anchor,
         epsg,
-        unit_m: match basis {
-            FrameBasis::Control { unit, .. } => unit.metres,
-            _ => 1.0,
-        },
+        unit_m,
         offset,
         is_metric: anchor.is_some() || !control.is_empty(),
         control,
