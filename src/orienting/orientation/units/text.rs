@@ -1,6 +1,6 @@
 //! Units that well-known text and PROJ texts state themselves.
 
-use super::{LinearUnit, PlanUnit};
+use super::unit::{LinearUnit, PlanUnit};
 
 /// What a text states.
 #[derive(Default)]

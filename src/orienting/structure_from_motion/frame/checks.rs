@@ -7,9 +7,9 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::positions::{RECEIVER_SIGMA_M, upright_fit};
+use super::places::{RECEIVER_SIGMA_M, upright_fit};
+use super::stated::{StatedPose, spread};
 use super::vertical::{ByAngles, NEARER_TO_A_WALL, angle_between};
-use super::{StatedPose, spread};
 use crate::base::math;
 use crate::orienting::orientation::{Anchor, geocentric_of};
 use crate::orienting::structure_from_motion::block::Block;

@@ -11,46 +11,37 @@
 //! 3. The main plane of the points is level. Scale and north are arbitrary.
 //!
 //! ```text
-//! positions  the similarity to stated positions
+//! stated     what is stated of photographs, and where the block has them
+//! places     stated positions beside those of the block, and the similarity between them
+//! positions  which similarity to stated positions can be true
 //! vertical   up by angles, up by the plane of the points
 //! checks     whether a placement can be true
 //! words      what is doubtful of all that, for people
 //! ```
 
 mod checks;
+mod places;
 mod positions;
+mod stated;
 #[cfg(test)]
 mod tests;
 mod vertical;
 mod words;
 
-use nalgebra::{Matrix3, Point3, Rotation3, SymmetricEigen, Vector3};
+use nalgebra::{Point3, Rotation3, Vector3};
 
 pub(super) use self::checks::{ByControl, Doubt, Placement, doubts, tilt_sigma};
 use self::positions::by_positions;
+pub(super) use self::stated::{StatedPose, spread};
+use self::stated::{centers, points};
 pub(super) use self::vertical::rotation_of_angles;
 use self::vertical::{AnglesFinding, turn_to_up, up_of_angles, up_of_plane};
 pub(super) use self::words::OFFER;
 use super::block::Block;
 use super::ground_control::ControlResidual;
 use super::similarity::Similarity;
-use crate::base::geometry::{mean_point, rotation_from_axis_angle};
-use crate::base::math;
+use crate::base::geometry::mean_point;
 use crate::orienting::orientation::{Anchor, LinearUnit};
-
-/// What is stated of a photograph in a frame east, north, up.
-#[derive(Clone, Debug, Default)]
-pub(super) struct StatedPose {
-    pub position: Option<Point3<f64>>,
-    /// Is the height of the position not stated?
-    pub lacks_height: bool,
-    /// Standard deviation of the position, metres; `None` where it is not stated.
-    pub sigma_m: Option<f64>,
-    /// `cam_from_world`.
-    pub rotation: Option<Rotation3<f64>>,
-    /// The angles that give the rotation, degrees, pitch -90 down.
-    pub yaw_pitch_roll: Option<[f64; 3]>,
-}
 
 /// What the frame of the world rests on.
 #[derive(Clone, Debug, PartialEq)]
@@ -191,15 +182,6 @@ pub(super) fn control_doubts(
     })
 }
 
-fn centers(block: &Block) -> Vec<Point3<f64>> {
-    let poses = block.photos.iter().filter_map(|p| p.pose.as_ref());
-    poses.map(|pose| pose.center).collect()
-}
-
-fn points(block: &Block) -> Vec<Point3<f64>> {
-    block.tracks.iter().filter_map(|t| t.point).collect()
-}
-
 fn turn(block: &mut Block, rotation: &Rotation3<f64>) {
     let similarity = Similarity {
         scale: 1.0,
@@ -216,40 +198,4 @@ fn shift(block: &mut Block, by: &Vector3<f64>) {
         shift: *by,
     };
     similarity.apply(block);
-}
-
-/// How far points spread along their main axes.
-pub(super) struct Spread {
-    /// Standard deviations, the largest first.
-    pub lengths: [f64; 3],
-    /// Direction of the largest one.
-    axis: Vector3<f64>,
-    /// Direction of the least one.
-    normal: Vector3<f64>,
-}
-
-pub(super) fn spread(points: &[Point3<f64>]) -> Spread {
-    let middle = mean_point(points);
-    let square = points.iter().fold(Matrix3::zeros(), |sum, p| {
-        let d = p - middle;
-        sum + d * d.transpose()
-    });
-    let eigen = SymmetricEigen::new(square / points.len() as f64);
-    let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-    Spread {
-        lengths: order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()),
-        axis: eigen.eigenvectors.column(order[0]).into_owned(),
-        normal: eigen.eigenvectors.column(order[2]).into_owned(),
-    }
-}
-
-/// Turns a placement about an axis through a point until a direction is as steep as it can be.
-fn level(placed: &mut Similarity, middle: &Point3<f64>, axis: &Vector3<f64>, up: &Vector3<f64>) {
-    let across = |v: &Vector3<f64>| v - axis * axis.dot(v);
-    let (from, to) = (across(up), across(&Vector3::z()));
-    let angle = math::atan2(from.cross(&to).dot(axis), from.dot(&to));
-    let rotation = rotation_from_axis_angle(&(axis * angle));
-    placed.rotation = rotation * placed.rotation;
-    placed.shift = rotation * (placed.shift - middle.coords) + middle.coords;
 }

@@ -1,6 +1,10 @@
 //! Planted blocks, and what is stated of them.
 
+use nalgebra::Matrix3;
+
 use super::*;
+use crate::base::geometry::rotation_from_axis_angle;
+use crate::base::math;
 use crate::orienting::structure_from_motion::bundle::tests::planted;
 use crate::orienting::structure_from_motion::random::Random;
 

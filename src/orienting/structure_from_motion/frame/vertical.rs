@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
-use super::{StatedPose, centers, points, spread};
+use super::stated::{StatedPose, centers, points, spread};
 use crate::base::geometry::{mean_point, rotation_from_axis_angle};
 use crate::base::math;
 use crate::orienting::orientation::rotation_from_yaw_pitch_roll;

@@ -1,6 +1,7 @@
 //! What is doubtful of stated angles and positions, in words that lead to what is to be done.
 
 use super::checks::Doubt;
+use super::places::TooNear;
 use super::positions::NoPositions;
 use super::vertical::AnglesFinding;
 use crate::base::error::listed;
@@ -64,7 +65,7 @@ pub(super) fn of_no_positions(why: &NoPositions) -> Option<String> {
             "all {stated} positions state one place, as of a receiver that found no satellites: they \
              give no scale"
         )),
-        NoPositions::Near { stated, noise_m } => Some(format!(
+        NoPositions::Near(TooNear { stated, noise_m }) => Some(format!(
             "the {stated} stated positions fit the photographs to {noise_m:.1} m only, which is as \
              much as they differ: they give no frame"
         )),
