@@ -36,7 +36,7 @@ pub(super) use self::stated::{StatedPose, spread};
 use self::stated::{centers, points};
 pub(super) use self::vertical::rotation_of_angles;
 use self::vertical::{AnglesFinding, turn_to_up, up_of_angles, up_of_plane};
-pub(super) use self::words::OFFER;
+pub(super) use self::words::{NOTHING_STATED, OFFER};
 use super::block::Block;
 use super::ground_control::ControlResidual;
 use super::similarity::Similarity;

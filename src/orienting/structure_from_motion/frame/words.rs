@@ -7,7 +7,7 @@ use super::vertical::AnglesFinding;
 use crate::base::error::listed;
 
 /// Of photographs whose headers state nothing.
-pub(super) const NOTHING_STATED: &str = "neither positions nor angles are stated";
+pub(in super::super) const NOTHING_STATED: &str = "neither positions nor angles are stated";
 
 /// The way to what a usual mistake means.
 pub(in super::super) const OFFER: &str = "--apply-fix reads them so";

@@ -22,7 +22,7 @@ use crate::orienting::orientation::InputFile;
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::bundle::covariance;
 use crate::orienting::structure_from_motion::features::Features;
-use crate::orienting::structure_from_motion::frame::{FrameBasis, to_frame};
+use crate::orienting::structure_from_motion::frame::{FrameBasis, NOTHING_STATED, to_frame};
 use crate::orienting::structure_from_motion::ground_control::{
     Beside, GeoList, GroundControl, to_control,
 };
@@ -325,7 +325,14 @@ impl OrientChain {
         };
         let model = sparse_model(&block, &names, &basis);
         let mut report = report(&block, &names, &basis, covariance.as_ref(), left_out);
-        report.warnings.extend(notes);
+        // That nothing is stated is no fault of it.
+        let (nothing, doubts): (Vec<_>, Vec<_>) =
+            notes.into_iter().partition(|note| note == NOTHING_STATED);
+        report.frame += &nothing
+            .iter()
+            .map(|note| format!("; {note}"))
+            .collect::<String>();
+        report.warnings.extend(doubts);
         Ok(Oriented { model, report })
     }
 
