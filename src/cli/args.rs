@@ -151,6 +151,10 @@ pub(super) struct OrientArgs {
     /// file of that name among the photographs.
     #[arg(long, value_name = "FILE")]
     pub gcp: Option<PathBuf>,
+    /// Read control points or angles that a usual mistake explains (axes exchanged, rows from
+    /// below, feet, a roll of 180 degrees) as they were meant, instead of leaving them out.
+    #[arg(long)]
+    pub apply_fix: bool,
     /// Keep the principal point in the middle, also where the photographs determine it.
     #[arg(long)]
     pub hold_center: bool,

@@ -53,6 +53,7 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
         },
         focal_px: args.focal,
         holds_center: args.hold_center,
+        applies_fix: args.apply_fix,
     };
     let bar = ProgressBar::new(BAR_STEPS as u64);
     let style = ProgressStyle::with_template("{msg:12} {bar:40} {elapsed}");
@@ -68,9 +69,10 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
     eprintln!("{seen}");
     files::write_all(&args.out, &oriented.files())?;
     print!("{}", oriented.report.to_text());
-    let epsg = (oriented.report.epsg).map_or_else(String::new, |code| format!(" --epsg {code}"));
+    let epsg =
+        (oriented.report.epsg).map_or_else(String::new, |code| format!(" --crs EPSG:{code}"));
     println!(
-        "written to {}; go on with: ridgeline reconstruct {} --orientation {}{epsg}",
+        "written to {}; go on with: ridgeline reconstruct {} --orientation {}{epsg} --out MODEL",
         args.out.display(),
         args.photos.display(),
         args.out.display()

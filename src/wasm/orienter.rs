@@ -16,8 +16,8 @@ use super::convert::{
 use crate::base::execution::{MergedShards, with_listener};
 use crate::orienting::orientation::InputFile;
 use crate::orienting::structure_from_motion::{
-    CameraReport, ControlResidual, FeatureOptions, GroundControl, Intrinsics, OrientChain,
-    OrientOptions, OrientReport, Oriented, PairSummary, PhotoReport, Pose, ReadPhoto, Snapshot,
+    CameraReport, ControlResidual, FeatureOptions, Intrinsics, OrientChain, OrientOptions,
+    OrientReport, Oriented, PairSummary, PhotoReport, Pose, ReadPhoto, Snapshot,
 };
 use crate::photographs::camera::Camera;
 
@@ -48,6 +48,9 @@ struct JsOrientOptions {
     /// Keep the principal point in the middle of the photographs.
     #[tsify(optional)]
     holds_center: bool,
+    /// Read control points or angles that a usual mistake explains as they were meant.
+    #[tsify(optional)]
+    applies_fix: bool,
 }
 
 /// What `takePhoto` returns.
@@ -120,6 +123,7 @@ impl Orienter {
                 },
                 focal_px: options.focal_px,
                 holds_center: options.holds_center,
+                applies_fix: options.applies_fix,
             }),
             merged: MergedShards::default(),
             oriented: None,
@@ -149,13 +153,13 @@ impl Orienter {
         to_js(&about)
     }
 
-    /// Takes a list of ground control points, which give the frame of what `orient` returns.
+    /// Takes a list of ground control points, which give the frame of what `orient` returns, or of
+    /// the places of photographs, which count instead of those in their headers.
     #[wasm_bindgen(js_name = setControl)]
     pub fn set_control(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), JsValue> {
-        let list = InputFile::new(path, bytes);
-        let control = GroundControl::read(path, &list.text()).map_err(|e| input_error(&e))?;
-        self.chain.set_control(Some(control));
-        Ok(())
+        let list = [InputFile::new(path, bytes)];
+        let set = self.chain.set_lists(&list);
+        set.map_err(|e| input_error(&e))
     }
 
     /// The maps that orienters may divide between them before `connect`, in their order.

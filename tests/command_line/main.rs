@@ -6,6 +6,7 @@
 mod common;
 mod corrections;
 mod examples;
+mod options;
 mod orient;
 mod plan_tile_join;
 #[path = "../common/tiff.rs"]

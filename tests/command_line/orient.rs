@@ -143,7 +143,7 @@ fn control_points_give_the_map_and_a_wrong_one_is_named() {
         "EPSG:25832, x from 432100 and y from 5412300 m: 5 of 6 ground control points",
         "ground control point middle is -1.9",
         "from where the others put it: check its coordinates and marks",
-        "--epsg 25832",
+        "--crs EPSG:25832 --out MODEL",
     ] {
         assert!(printed.contains(words), "{words}: {printed}");
     }

@@ -139,6 +139,9 @@ const HEAD_LINES: usize = 6;
 /// those of other lists, and it orients no image by itself.
 pub(crate) const GCP_LIST: &str = "gcp_list.txt";
 
+/// What its list of the places of photographs is called.
+pub(crate) const GEO_LIST: &str = "geo.txt";
+
 /// What a point cloud in LAS or LAZ begins with.
 pub(crate) const POINT_CLOUD: &[u8] = b"LASF";
 

@@ -3,6 +3,7 @@
 //! ```text
 //! input_file         a file in memory, or the head of a photograph
 //! needed             what is needed of a file, all of it or blocks of it, and who gives it
+//! path_name          which images a name means
 //! photograph_head    what of a photograph is read to plan with it
 //! image_orientation  interior and exterior orientation of one image: what every reader returns
 //! angles             omega, phi, kappa and their units
@@ -12,6 +13,7 @@
 //! detect             what kind of file it is
 //! unread             formats that are known but not read, and what to do instead
 //! reference          EPSG code of the coordinate reference system
+//! units              what coordinates of a system count: metres, feet, degrees
 //! sets               the files that together orient images, and their reader
 //! metric_frame       geocentric and geographic positions become a local metric frame
 //! ```
@@ -45,10 +47,12 @@ mod image_orientation;
 mod input_file;
 mod metric_frame;
 mod needed;
+mod path_name;
 mod photograph_head;
 mod reference;
 mod sets;
 mod transverse_mercator;
+mod units;
 mod unread;
 
 pub(crate) use angles::EXACT_ROTATION;
@@ -57,7 +61,7 @@ pub use angles::{
     rotation_from_yaw_pitch_roll,
 };
 pub use detect::{FileKind, detect};
-pub(crate) use detect::{GCP_LIST, POINT_CLOUD};
+pub(crate) use detect::{GCP_LIST, GEO_LIST, POINT_CLOUD};
 pub use format::Format;
 pub use geodesy::Anchor;
 pub(crate) use geodesy::geocentric_of;
@@ -66,8 +70,13 @@ pub use input_file::InputFile;
 pub(crate) use input_file::stem;
 pub use metric_frame::to_metric_frame;
 pub use needed::{BLOCK_BYTES, FileSource, Needed};
+pub(crate) use path_name::{NameEnding, NameFit, PathName, images_called};
 pub use photograph_head::PhotographHead;
 pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};
 pub(crate) use transverse_mercator::TransverseMercator;
+pub use units::{
+    LinearUnit, PlanUnit, SystemUnits, height_unit_of_code, linear_unit_of_code, units_of,
+    units_of_code,
+};
 pub(crate) use unread::{UnreadFormat, of as unread_format};

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::assignment::PathName;
-
 /// The names of views: without folders, or with as many as tell them apart.
 pub(crate) fn view_names(paths: &[&str]) -> Vec<String> {
     let parts: Vec<Vec<&str>> = paths.iter().map(|p| p.rsplit('/').collect()).collect();
@@ -32,19 +30,6 @@ pub(crate) fn view_names(paths: &[&str]) -> Vec<String> {
     }
 }
 
-/// The images that a name means, which may leave out folders and extension: those that fit best.
-pub(crate) fn images_called(name: &str, paths: &[PathName]) -> Vec<usize> {
-    let readings = PathName::readings(name);
-    let fits: Vec<_> = paths
-        .iter()
-        .map(|path| readings.iter().filter_map(|name| name.fit(path)).min())
-        .collect();
-    let best = fits.iter().flatten().min();
-    (0..paths.len())
-        .filter(|&i| best.is_some() && fits[i].as_ref() == best)
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -56,14 +41,5 @@ mod tests {
         assert_eq!(view_names(&paths), names);
         assert_eq!(view_names(&["1.jpg", "c/1.jpg"]), ["1.jpg", "c/1.jpg"]);
         assert_eq!(view_names(&["1.jpg", "1.jpg"]), ["1.jpg", "1.jpg"]);
-    }
-
-    #[test]
-    fn a_name_means_the_images_that_fit_it_best() {
-        let paths = ["c0/1.jpg", "c1/1.jpg", "masks/2.jpg.png", "c0/2.jpg"].map(PathName::new);
-        assert_eq!(images_called("1", &paths), [0, 1]);
-        assert_eq!(images_called("c1/1.JPG", &paths), [1]);
-        assert_eq!(images_called("2.jpg", &paths), [3]);
-        assert_eq!(images_called("3.jpg", &paths), [0; 0]);
     }
 }

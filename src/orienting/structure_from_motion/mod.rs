@@ -44,7 +44,7 @@ mod verification;
 pub use block::Pose;
 pub use features::FeatureOptions;
 pub use frame::FrameBasis;
-pub use ground_control::{ControlPoint, ControlResidual, GroundControl};
+pub use ground_control::{ControlPoint, ControlResidual, GeoList, GroundControl};
 pub use intrinsics::Intrinsics;
 pub use metadata::PhotoMetadata;
 pub use orient::{

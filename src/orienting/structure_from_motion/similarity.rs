@@ -4,6 +4,8 @@ use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
 use super::block::{Block, Pose};
 use super::linear::rotation_between;
+use crate::base::geometry::rotation_from_axis_angle;
+use crate::base::math;
 
 /// `x -> s R x + t`.
 #[derive(Clone, Debug)]
@@ -46,6 +48,36 @@ impl Similarity {
         })
     }
 
+    /// The similarity in x and y of least weighted squares that turns about z only, z being scaled
+    /// alike; `None` where the points do not differ in plan.
+    pub(super) fn in_plan(
+        from: &[Point3<f64>],
+        to: &[Point3<f64>],
+        weights: &[f64],
+    ) -> Option<Self> {
+        let total: f64 = weights.iter().sum();
+        let mean = |points: &[Point3<f64>]| {
+            let weighted = points.iter().zip(weights).map(|(p, w)| p.coords * *w);
+            weighted.fold(Vector3::zeros(), |a, b| a + b) / total
+        };
+        let (middle_from, middle_to) = (mean(from), mean(to));
+        let (mut along, mut across, mut square) = (0.0, 0.0, 0.0);
+        for ((a, b), w) in from.iter().zip(to).zip(weights) {
+            let (a, b) = (a.coords - middle_from, b.coords - middle_to);
+            along += w * (a.x * b.x + a.y * b.y);
+            across += w * a.cross(&b).z;
+            square += w * (a.x * a.x + a.y * a.y);
+        }
+        let scale = math::hypot(along, across) / square;
+        let turn = Vector3::z() * math::atan2(across, along);
+        let rotation = rotation_from_axis_angle(&turn);
+        (scale > 0.0 && scale.is_finite()).then(|| Self {
+            scale,
+            rotation,
+            shift: middle_to - rotation * middle_from * scale,
+        })
+    }
+
     pub(super) fn point(&self, p: &Point3<f64>) -> Point3<f64> {
         Point3::from(self.rotation * p.coords * self.scale + self.shift)
     }
@@ -70,7 +102,6 @@ impl Similarity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::geometry::rotation_from_axis_angle;
     use crate::orienting::structure_from_motion::random::Random;
 
     #[test]

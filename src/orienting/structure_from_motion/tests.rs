@@ -204,6 +204,36 @@ fn a_list_of_control_points_beside_the_photographs_gives_the_map() {
 }
 
 #[test]
+fn places_beside_the_photographs_count_as_those_in_headers() {
+    let (scene, _) = drone_scene(SIZE_PX);
+    let mut files = photographs(&scene);
+    let anchor = crate::orienting::orientation::Anchor {
+        lon_deg: -71.1,
+        lat_deg: 42.3,
+        height_m: 30.0,
+    };
+    let mut text = "EPSG:4326\n".to_owned();
+    for (photo, view) in files.iter().zip(&scene.views) {
+        let name = photo.name().split('.').next().unwrap();
+        let [lon, lat, height] = anchor.geographic(&view.camera.center);
+        text += &format!("{name} {lon:.10} {lat:.10} {height:.4} 0 0 0 0.02 0.03\n");
+    }
+    files.push(InputFile::new("geo.txt", text.into_bytes()));
+    let oriented = orient(&files, &options()).unwrap();
+    let report = &oriented.report;
+    assert!(
+        report.frame.contains("the stated positions of 9 of 9"),
+        "{}",
+        report.to_text()
+    );
+    assert!(report.is_metric);
+    let photos = &oriented.model.photos;
+    let apart = (photos[8].pose.center - photos[0].pose.center).norm();
+    let truth = (scene.views[8].camera.center - scene.views[0].camera.center).norm();
+    assert!((apart / truth - 1.0).abs() < 0.01, "{apart} {truth}");
+}
+
+#[test]
 fn a_stated_focal_length_that_the_photographs_contradict_is_named_and_mended() {
     let files = photographs(&drone_scene(SIZE_PX).0);
     let truth = 0.9 * f64::from(SIZE_PX);

@@ -90,20 +90,20 @@ export class OrientationRun {
 
   /**
    * Orients photographs with so many workers.
-   * @param control a list of ground control points, which give the frame
+   * @param lists of ground control points, which give the frame, and of the photographs' own places
    */
   async orient(
     photographs: readonly InputFile[],
-    control: InputFile | null,
+    lists: readonly InputFile[],
     workers: number,
     options: OrientOptions,
     events: OrientEvents,
   ): Promise<OrientationReport> {
     this.#workers = Array.from({ length: Math.min(workers, photographs.length) }, () => new OrientWorker());
     await Promise.all(this.#workers.map((worker) => worker.open(options)));
-    if (control !== null) {
-      // First of all: a list that cannot be read is known before anything is computed.
-      await this.#first().call("readControl", control.path, control.blob);
+    // First of all: a list that cannot be read is known before anything is computed.
+    for (const { path, blob } of lists) {
+      await this.#first().call("readControl", path, blob);
     }
     await this.#read(photographs, events);
     await this.#pair(events);

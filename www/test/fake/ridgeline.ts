@@ -176,6 +176,7 @@ export class Session implements CoreSession {
         taken: null,
         position: null,
         height_m: null,
+        lacks_hemispheres: false,
         yaw_pitch_roll: null,
       },
     }));

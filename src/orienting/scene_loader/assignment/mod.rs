@@ -2,7 +2,6 @@
 //!
 //! ```text
 //! order       photographs that were renamed
-//! path_name   paths as names are compared, and how well two of them fit
 //! size        images of another size than their orientation states
 //! ```
 //!
@@ -11,21 +10,18 @@
 //! first. Pairs that are equally close are ambiguous where they share an image or an orientation.
 
 mod order;
-mod path_name;
 mod size;
 #[cfg(test)]
 mod tests;
 
 pub(super) use order::assign_in_order;
-pub(super) use path_name::PathName;
 pub(super) use size::{factor_in_words, resized, scale};
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use self::path_name::{NameEnding, NameFit};
 use self::size::SizeFit;
-use crate::orienting::orientation::Orientation;
+use crate::orienting::orientation::{NameEnding, NameFit, Orientation, PathName};
 
 /// An image that may be given an orientation.
 #[derive(Clone)]

@@ -8,17 +8,16 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
-use super::assignment::{ImageCandidate, PathName};
+use super::assignment::ImageCandidate;
 use super::candidate::{Choice, OrientationCandidate, choose, take_group};
 use super::input::LoadOptions;
 use super::known_files::kinds_of;
-use super::names::images_called;
 use super::notices;
 use super::planned_view::{PlannedImage, PlannedView};
 use crate::base::error::{Error, listed};
 use crate::orienting::orientation::{
-    Anchor, FileKind, InputFile, Orientation, OrientationSet, StatedReference, UnreadFormat,
-    epsg_of, orientation_sets, to_metric_frame, unread_format,
+    Anchor, FileKind, InputFile, Orientation, OrientationSet, PathName, StatedReference,
+    UnreadFormat, epsg_of, images_called, orientation_sets, to_metric_frame, unread_format,
 };
 use crate::orienting::scene::Survey;
 use crate::photographs::raster::image_header;

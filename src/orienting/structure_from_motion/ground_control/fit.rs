@@ -1,13 +1,14 @@
-//! The block brought to ground control points: each from its images, then a similarity.
+//! Each control point from its images, then the similarity from those to the coordinates.
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::gcp_list::{ControlPoint, GroundControl};
+use super::marks::{Mark, Marks};
 use super::residual::ControlResidual;
 use crate::base::least_squares::{Loss, NormalEquations};
 use crate::base::math;
-use crate::orienting::structure_from_motion::block::{Block, Observation};
-use crate::orienting::structure_from_motion::frame::{FrameBasis, spread};
+use crate::orienting::structure_from_motion::block::{Block, BlockPhoto, Observation};
+use crate::orienting::structure_from_motion::frame::{spread, tilt_sigma};
 use crate::orienting::structure_from_motion::random::Random;
 use crate::orienting::structure_from_motion::resection::linearised;
 use crate::orienting::structure_from_motion::similarity::Similarity;
@@ -47,16 +48,42 @@ struct Seen {
     agreeing: Vec<usize>,
 }
 
-/// Brings the block into the frame of the control points; `paths` are those of its photographs.
-/// The block stays as it is where they do not give a frame, and the error says why.
-pub(in super::super) fn to_control(
-    block: &mut Block,
-    paths: &[&str],
-    control: &GroundControl,
-) -> Result<FrameBasis, String> {
+/// Photographs with their poses, and without keypoints: what marks are looked at in.
+pub(super) fn without_keypoints(block: &Block) -> Block {
+    let photos = block.photos.iter().map(|photo| BlockPhoto {
+        keypoints: Vec::new(),
+        factors: Vec::new(),
+        sigma_px: MARK_SIGMA_PX,
+        camera: photo.camera,
+        pose: photo.pose.clone(),
+    });
+    Block {
+        photos: photos.collect(),
+        cameras: block.cameras.clone(),
+        tracks: Vec::new(),
+    }
+}
+
+/// Points brought to their coordinates.
+#[derive(Clone, Debug)]
+pub(super) struct Fit {
+    pub similarity: Similarity,
+    pub points: Vec<ControlResidual>,
+    /// Root mean square residual of the agreeing ones, in plan and in height, metres.
+    pub rms_m: [f64; 2],
+    /// How many agree.
+    pub agreeing: usize,
+    /// Sum of the losses of all points, in squared standard deviations.
+    pub loss: f64,
+    /// Standard deviation of the vertical, radians.
+    pub tilt_sigma: f64,
+}
+
+/// The similarity from a block without keypoints to control points; why there is none.
+pub(super) fn fitted(block: &Block, marks: &Marks, control: &GroundControl) -> Result<Fit, String> {
     let (mut usable, mut points) = (Vec::new(), Vec::new());
-    for point in &control.points {
-        let (seen, residual) = looked_for(block, paths, point);
+    for (point, of_point) in control.points.iter().zip(&marks.of_points) {
+        let (seen, residual) = looked_for(block, of_point, point);
         if let Some(seen) = seen {
             usable.push((points.len(), seen, point.position));
         }
@@ -82,12 +109,11 @@ pub(in super::super) fn to_control(
         .collect();
     let (similarity, sigmas) = robust_similarity(&from, &to, &of_images)
         .ok_or("the ground control points do not differ in the photographs")?;
-    similarity.apply(block);
     let lengths = |i: usize| (similarity.point(&from[i]) - to[i]).norm() / sigmas[i];
     let mut all: Vec<f64> = (0..from.len()).map(lengths).collect();
     // A block bends by more than the noise of its keypoints: the points themselves say by how much.
     let unit = math::median(&mut all).map_or(1.0, |m| (m / MAXWELL_MEDIAN).max(1.0));
-    let (mut squares, mut agreeing) = ([0.0; 2], 0.0);
+    let (mut squares, mut agreeing) = ([0.0; 2], 0);
     for (i, (place, ..)) in usable.iter().enumerate() {
         let d: Vector3<f64> = similarity.point(&from[i]) - to[i];
         let point = &mut points[*place];
@@ -97,16 +123,19 @@ pub(in super::super) fn to_control(
         if point.agrees {
             squares[0] += d.x * d.x + d.y * d.y;
             squares[1] += d.z * d.z;
-            agreeing += 1.0;
+            agreeing += 1;
         }
     }
-    Ok(FrameBasis::Control {
-        system: control.system.clone(),
-        epsg: control.epsg,
-        anchor: control.anchor,
-        offset: control.offset.into(),
+    let noise_m = unit * math::median(&mut sigmas.clone()).unwrap_or(COORDINATE_SIGMA_M);
+    Ok(Fit {
+        rms_m: squares.map(|sum: f64| (sum / f64::from(agreeing.max(1))).sqrt()),
+        agreeing: agreeing as usize,
+        loss: (0..from.len())
+            .map(|i| LOSS.cost(lengths(i) * lengths(i)))
+            .sum(),
+        tilt_sigma: tilt_sigma(&to, noise_m),
+        similarity,
         points,
-        rms_m: squares.map(|sum: f64| (sum / f64::max(agreeing, 1.0)).sqrt()),
     })
 }
 
@@ -115,33 +144,53 @@ fn is_narrow(points: &[Point3<f64>]) -> bool {
     across <= COLLINEAR_SHARE * along
 }
 
-/// A control point by its marks, and what is known of it before there is a frame.
-fn looked_for(
-    block: &Block,
-    paths: &[&str],
-    point: &ControlPoint,
-) -> (Option<Seen>, ControlResidual) {
-    let name = |path: &str| path.rsplit('/').next().unwrap_or(path).to_ascii_lowercase();
-    let mut with = Block {
-        tracks: Vec::new(),
-        ..block.clone()
-    };
-    let (mut observations, mut shown) = (Vec::new(), Vec::new());
-    for (image, pixel) in &point.marks {
-        let named = paths.iter().position(|path| name(path) == name(image));
-        let Some(photo) = named.filter(|&p| with.photos[p].pose.is_some()) else {
-            continue;
-        };
-        let of_block = &mut with.photos[photo];
+/// A block with the marks of a point as keypoints, and which they are.
+fn with_marks(block: &Block, marks: &[Mark]) -> (Block, Vec<Observation>) {
+    let mut with = block.clone();
+    let mut observations = Vec::new();
+    for mark in marks
+        .iter()
+        .filter(|m| block.photos[m.photo].pose.is_some())
+    {
+        let of_block = &mut with.photos[mark.photo];
         observations.push(Observation {
-            photo,
+            photo: mark.photo,
             keypoint: of_block.keypoints.len(),
             is_used: true,
         });
-        of_block.keypoints.push(*pixel);
-        of_block.factors.push(MARK_SIGMA_PX / of_block.sigma_px);
-        shown.push(image);
+        of_block.keypoints.push(mark.pixel);
+        of_block.factors.push(1.0);
     }
+    (with, observations)
+}
+
+/// How well marks meet: of each that agrees with others 1 where the rays meet, 0 at the largest
+/// residual.
+pub(super) fn meeting(block: &Block, of_points: &[Vec<Mark>]) -> f64 {
+    let of_point = |marks: &Vec<Mark>| {
+        let (with, observations) = with_marks(block, marks);
+        let Some((place, agreeing)) = triangulate(&with, &observations) else {
+            return 0.0;
+        };
+        let share = |&i: &usize| {
+            let r = with.residual(&observations[i], &place) / LARGEST_RESIDUAL_SIGMAS;
+            1.0 - (r * r).min(1.0)
+        };
+        agreeing.iter().map(share).sum::<f64>()
+    };
+    of_points.iter().map(of_point).sum()
+}
+
+/// A control point by its marks, and what is known of it before there is a frame.
+fn looked_for(
+    block: &Block,
+    marks: &[Mark],
+    point: &ControlPoint,
+) -> (Option<Seen>, ControlResidual) {
+    let shown: Vec<&Mark> = (marks.iter())
+        .filter(|m| block.photos[m.photo].pose.is_some())
+        .collect();
+    let (with, observations) = with_marks(block, marks);
     let seen = seen_in(&with, &observations);
     let agreeing = seen.as_ref().map_or(&[][..], |s| &s.agreeing);
     let wrong = (0..shown.len()).filter(|i| seen.is_some() && !agreeing.contains(i));
@@ -149,7 +198,7 @@ fn looked_for(
         name: point.name.clone(),
         stated: point.stated,
         marks: [shown.len(), agreeing.len()],
-        wrong_marks: wrong.map(|i| shown[i].clone()).collect(),
+        wrong_marks: wrong.map(|i| shown[i].image.clone()).collect(),
         residual_m: None,
         sigma_m: None,
         agrees: false,
@@ -229,114 +278,4 @@ fn robust_similarity(
     }
     let sigmas = sigmas(&best);
     Some((best, sigmas))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::base::geometry::rotation_from_axis_angle;
-    use crate::orienting::structure_from_motion::bundle::tests::planted;
-
-    const OFFSET: Vector3<f64> = Vector3::new(432_100.0, 5_412_300.0, 0.0);
-
-    /// A block in a frame of its own, and a list of its points of these numbers as they are on the
-    /// map; `change` may spoil coordinates and marks.
-    fn listed(
-        numbers: &[usize],
-        mut change: impl FnMut(usize, &mut Point3<f64>, &mut Vec<Vector3<f64>>),
-    ) -> (Block, Block, Vec<String>, GroundControl) {
-        let truth = planted(0.1, 3);
-        let paths: Vec<String> = (0..9).map(|i| format!("images/P{i}.jpg")).collect();
-        let mut text = "EPSG:25832\n".to_owned();
-        for (name, &number) in numbers.iter().enumerate() {
-            let track = &truth.tracks[number];
-            let mut place = track.point.unwrap() + OFFSET;
-            let mut marks: Vec<Vector3<f64>> = (track.used())
-                .map(|o| truth.pixel(o).coords.push(o.photo as f64))
-                .collect();
-            change(name, &mut place, &mut marks);
-            for mark in marks {
-                let [x, y, z] = place.into();
-                text += &format!(
-                    "{x} {y} {z} {} {} p{}.JPG g{name}\n",
-                    mark.x, mark.y, mark.z
-                );
-            }
-        }
-        let mut block = truth.clone();
-        let similarity = Similarity {
-            scale: 0.02,
-            rotation: rotation_from_axis_angle(&Vector3::new(1.2, -0.7, 0.5)),
-            shift: Vector3::new(0.3, 0.1, 4.0),
-        };
-        similarity.apply(&mut block);
-        let control = GroundControl::read("gcp_list.txt", &text).unwrap();
-        (truth, block, paths, control)
-    }
-
-    /// Numbers of points that several photographs show.
-    fn well_seen(count: usize) -> Vec<usize> {
-        let truth = planted(0.1, 3);
-        let seen = (0..truth.tracks.len()).filter(|&t| truth.tracks[t].observations.len() >= 4);
-        seen.step_by(9).take(count).collect()
-    }
-
-    fn brought(block: &mut Block, paths: &[String], control: &GroundControl) -> FrameBasis {
-        let paths: Vec<&str> = paths.iter().map(String::as_str).collect();
-        to_control(block, &paths, control).unwrap()
-    }
-
-    #[test]
-    fn control_points_give_the_map_and_a_wrong_one_and_a_wrong_mark_are_named() {
-        let (truth, mut block, paths, control) = listed(&well_seen(7), |name, place, marks| {
-            if name == 2 {
-                *place += Vector3::new(0.0, 3.0, -1.0);
-            }
-            if name == 4 {
-                marks[0].x += 80.0;
-            }
-        });
-        let basis = brought(&mut block, &paths, &control);
-        let FrameBasis::Control {
-            points,
-            rms_m,
-            offset,
-            epsg,
-            ..
-        } = basis
-        else {
-            panic!("{basis:?}")
-        };
-        assert_eq!(epsg, Some(25832));
-        let agrees: Vec<bool> = points.iter().map(|p| p.agrees).collect();
-        assert_eq!(agrees, [true, true, false, true, true, true, true]);
-        assert_eq!(points[4].wrong_marks.len(), 1);
-        let [_, y, z] = points[2].residual_m.unwrap();
-        assert!((y + 3.0).abs() < 0.1 && (z - 1.0).abs() < 0.1, "{y} {z}");
-        assert!(rms_m[0] < 0.03 && rms_m[1] < 0.06, "{rms_m:?}");
-        for (a, b) in block.photos.iter().zip(&truth.photos) {
-            let [a, b] = [a, b].map(|p| p.pose.as_ref().unwrap().center);
-            let off = (a + Vector3::from(offset) - (b + OFFSET)).norm();
-            assert!(off < 0.1, "{off} m");
-        }
-    }
-
-    #[test]
-    fn too_few_points_or_points_on_a_line_give_no_frame() {
-        let (_, block, paths, control) = listed(&well_seen(4), |name, _, marks| {
-            marks.truncate(if name < 2 { 1 } else { 4 });
-        });
-        let refused = |control: &GroundControl| {
-            let paths: Vec<&str> = paths.iter().map(String::as_str).collect();
-            let mut attempt = block.clone();
-            let why = to_control(&mut attempt, &paths, control).unwrap_err();
-            assert_eq!(attempt.photos[0].pose, block.photos[0].pose);
-            why
-        };
-        assert!(refused(&control).starts_with("2 of 4 ground control points"));
-        let (_, _, _, control) = listed(&well_seen(4), |name, place, _| {
-            *place = Point3::from(OFFSET + Vector3::new(5.0, 4.0, 0.1) * name as f64);
-        });
-        assert!(refused(&control).contains("on one line"));
-    }
 }

@@ -6,11 +6,16 @@
 //! ```
 //!
 //! `im_x`, `im_y` count in pixels from the upper left corner of the photograph as it is stored.
+//! Coordinates count in the unit of the system, and become metres here.
 
 use nalgebra::{Point2, Point3, Vector3};
 
+use super::system::{StatedSystem, fields};
 use crate::base::error::{Error, Result};
-use crate::orienting::orientation::{Anchor, GCP_LIST, InputFile, epsg_of, geocentric_of};
+use crate::orienting::orientation::{
+    Anchor, GCP_LIST, InputFile, LinearUnit, PlanUnit, SystemUnits, TransverseMercator,
+    geocentric_of,
+};
 
 /// A point with known coordinates.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,8 +35,11 @@ pub struct ControlPoint {
 pub struct GroundControl {
     /// The reference system as it is stated.
     pub system: String,
-    /// Its EPSG code, where it is known and its coordinates are metres on a map.
+    /// Its EPSG code, where it is known and its coordinates are lengths on a map.
     pub epsg: Option<u32>,
+    /// What the coordinates count; heights without a unit of their own count as metres, or as the
+    /// plan does.
+    pub units: SystemUnits,
     /// Where the frame touches the Earth, for geographic coordinates: x east, y north, z up.
     pub anchor: Option<Anchor>,
     /// What was subtracted of coordinates on a map, metres: they keep their digits.
@@ -43,16 +51,10 @@ pub struct GroundControl {
 /// Coordinates on a map are counted from a multiple of this, metres.
 const GRID_M: f64 = 100.0;
 
-const SYSTEM: &str =
-    "a reference system in the first line: EPSG:25832, WGS84 UTM 32N, or +proj=... in metres";
-const COLUMNS: &str = "geo_x geo_y geo_z im_x im_y image_name [gcp_name]";
+/// Largest longitude and latitude, degrees.
+const LARGEST_DEG: [f64; 2] = [180.0, 90.0];
 
-/// What the first line says.
-struct System {
-    epsg: Option<u32>,
-    /// Degrees; with an EPSG code only where the coordinates are possible.
-    is_geographic: bool,
-}
+const COLUMNS: &str = "geo_x geo_y geo_z im_x im_y image_name [gcp_name]";
 
 impl GroundControl {
     /// What a list is called among photographs.
@@ -84,11 +86,11 @@ impl GroundControl {
             .map(|(i, line)| (i, line.trim()))
             .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
         let (first, stated) = lines.next().unwrap_or((0, ""));
-        let system =
-            system_of(stated).ok_or_else(|| refused(first, format!("'{stated}'"), SYSTEM))?;
+        let system = StatedSystem::of(stated)
+            .ok_or_else(|| refused(first, format!("'{stated}'"), StatedSystem::EXPECTED))?;
         let mut points: Vec<ControlPoint> = Vec::new();
         for (i, line) in lines {
-            let fields: Vec<&str> = line.split_whitespace().collect();
+            let fields = fields(line);
             let numbers: Vec<f64> = (fields.iter().take(5))
                 .map_while(|field| field.parse().ok().filter(|v: &f64| v.is_finite()))
                 .collect();
@@ -116,96 +118,108 @@ impl GroundControl {
                 }),
             }
         }
-        let is_outside = |p: &ControlPoint| p.stated[0].abs() > 180.0 || p.stated[1].abs() > 90.0;
-        let on_map = points.iter().any(is_outside);
-        let is_geographic = system.is_geographic && !on_map;
-        if on_map && matches!(system.epsg, None | Some(4326)) && system.is_geographic {
-            let problem = format!("'{stated}' has longitudes and latitudes, the points have not");
-            return Err(refused(first, problem, SYSTEM));
+        if let Some((problem, expected)) = no_degrees(&system.units, &points) {
+            return Err(refused(first, format!("'{stated}': {problem}"), expected));
         }
+        let is_on_map = matches!(system.units.plan, PlanUnit::Length(_));
         let mut control = Self {
             system: stated.to_owned(),
-            epsg: system.epsg.filter(|_| !is_geographic),
+            epsg: system.epsg.filter(|_| is_on_map),
+            units: system.units,
             anchor: None,
             offset: Vector3::zeros(),
             points,
         };
-        control.set_frame(is_geographic);
+        control.set_frame();
         Ok(control)
     }
 
+    /// The same points with other coordinates or marks.
+    pub(super) fn changed(&self, change: impl Fn(&mut ControlPoint)) -> Self {
+        let mut changed = self.clone();
+        changed.points.iter_mut().for_each(change);
+        changed.set_frame();
+        changed
+    }
+
+    /// The same points in other units.
+    pub(super) fn in_units(&self, units: SystemUnits) -> Self {
+        let mut changed = self.clone();
+        changed.units = units;
+        changed.set_frame();
+        changed
+    }
+
+    /// Longitude and latitude of a position of the frame, degrees, where its system is known.
+    pub(super) fn on_earth(&self, p: &Point3<f64>) -> Option<[f64; 2]> {
+        if let Some(anchor) = self.anchor {
+            let [lon, lat, _] = anchor.geographic(p);
+            return Some([lon, lat]);
+        }
+        let on_map = p + self.offset;
+        let grid = TransverseMercator::of_epsg(self.epsg?)?;
+        Some(grid.geographic(on_map.x, on_map.y))
+    }
+
     /// Positions in metres near zero.
-    fn set_frame(&mut self, is_geographic: bool) {
-        let Some([x, y, z]) = self.points.first().map(|p| p.stated) else {
+    fn set_frame(&mut self) {
+        let Some(first) = self.points.first().map(|p| p.stated) else {
             return;
         };
-        if is_geographic {
-            let anchor = Anchor::near(&geocentric_of(x, y, z));
-            self.anchor = Some(anchor);
-            for point in &mut self.points {
-                let [lon, lat, height] = point.stated;
-                point.position = anchor.local(&geocentric_of(lon, lat, height));
-            }
-        } else {
-            let round = |v: f64| (v / GRID_M).round() * GRID_M;
-            self.offset = Vector3::new(round(x), round(y), 0.0);
-            for point in &mut self.points {
-                point.position = Point3::from(point.stated) - self.offset;
-            }
+        let metres = |unit: Option<LinearUnit>| unit.map_or(1.0, |u| u.metres);
+        let geocentric = |[x, y, z]: [f64; 3]| match self.units.plan {
+            PlanUnit::Length(_) => None,
+            PlanUnit::Geocentric => Some(Point3::new(x, y, z)),
+            PlanUnit::Angle(deg) => Some(geocentric_of(
+                x * deg,
+                y * deg,
+                z * metres(self.units.height),
+            )),
+        };
+        self.anchor = geocentric(first).map(|zero| Anchor::near(&zero));
+        let (plan, height) = match self.units.plan {
+            PlanUnit::Length(unit) => (unit.metres, metres(self.units.height.or(Some(unit)))),
+            _ => (1.0, 1.0),
+        };
+        let on_map = |[x, y, z]: [f64; 3]| Point3::new(x * plan, y * plan, z * height);
+        let round = |v: f64| (v * plan / GRID_M).round() * GRID_M;
+        self.offset = match self.anchor {
+            Some(_) => Vector3::zeros(),
+            None => Vector3::new(round(first[0]), round(first[1]), 0.0),
+        };
+        let positions: Vec<Point3<f64>> = (self.points.iter())
+            .map(|point| match (self.anchor, geocentric(point.stated)) {
+                (Some(anchor), Some(place)) => anchor.local(&place),
+                _ => on_map(point.stated) - self.offset,
+            })
+            .collect();
+        for (point, position) in self.points.iter_mut().zip(positions) {
+            point.position = position;
         }
     }
 }
 
-/// What a line says of the reference system; `None` where it is none, or not in metres.
-fn system_of(line: &str) -> Option<System> {
-    let upper = line.to_ascii_uppercase();
-    let on_map = |epsg| System {
-        epsg,
-        is_geographic: false,
-    };
-    if upper.contains("+PROJ=") || upper.contains("+INIT=") {
-        let value = |key: &str| {
-            let words = upper.split_whitespace();
-            words.filter_map(|w| w.strip_prefix(key)).next()
-        };
-        let is_metric = value("+UNITS=").is_none_or(|unit| unit == "M")
-            && value("+TO_METER=").is_none_or(|factor| factor.parse() == Ok(1.0));
-        return match value("+PROJ=") {
-            Some("LONGLAT" | "LATLONG" | "LONLAT" | "LATLON") => Some(System {
-                epsg: None,
-                is_geographic: true,
-            }),
-            Some("UTM") if is_metric => {
-                let zone = value("+ZONE=").and_then(|z| z.parse().ok());
-                let is_south = upper.split_whitespace().any(|w| w == "+SOUTH");
-                let is_wgs = upper.contains("=WGS84");
-                Some(on_map(
-                    zone.filter(|_| is_wgs).and_then(|z| utm(z, is_south)),
-                ))
-            }
-            _ => is_metric.then(|| on_map(epsg_of(line))),
-        };
+/// Why coordinates are no longitudes and latitudes, and what is expected.
+fn no_degrees(
+    units: &SystemUnits,
+    points: &[ControlPoint],
+) -> Option<(&'static str, &'static str)> {
+    let is_beyond = |axis: usize, most: f64| points.iter().any(|p| p.stated[axis].abs() > most);
+    let [lon, lat] = LARGEST_DEG;
+    if !matches!(units.plan, PlanUnit::Angle(_)) || !(is_beyond(0, lon) || is_beyond(1, lat)) {
+        return None;
     }
-    if let (true, Some(epsg)) = (upper.contains("EPSG"), epsg_of(line)) {
-        // Geographic systems have these numbers, and a few on maps too.
-        let is_geographic = matches!(epsg, 4001..=4999);
-        return Some(System {
-            epsg: Some(epsg),
-            is_geographic,
-        });
-    }
-    let zone = upper.split("UTM").nth(1)?.trim();
-    let zone = zone.strip_prefix("ZONE").unwrap_or(zone).trim();
-    let is_south = zone.ends_with('S');
-    let number = zone.trim_end_matches(['N', 'S']).trim().parse().ok()?;
-    let epsg = utm(number, is_south)?;
-    Some(on_map(Some(epsg).filter(|_| upper.contains("WGS"))))
-}
-
-/// EPSG code of a zone of UTM on WGS84.
-fn utm(zone: u32, is_south: bool) -> Option<u32> {
-    let first = if is_south { 32_700 } else { 32_600 };
-    (1..=60).contains(&zone).then_some(first + zone)
+    let is_exchanged = !is_beyond(0, lat) && !is_beyond(1, lon);
+    Some(match is_exchanged {
+        true => (
+            "latitude before longitude",
+            "longitude first, then latitude",
+        ),
+        false => (
+            "longitudes and latitudes, but the points have others",
+            StatedSystem::EXPECTED,
+        ),
+    })
 }
 
 #[cfg(test)]
@@ -240,20 +254,6 @@ mod tests {
     }
 
     #[test]
-    fn reference_systems_in_all_their_forms() {
-        let of = |line: &str| system_of(line).map(|s| (s.epsg, s.is_geographic));
-        assert_eq!(of("WGS84 UTM 32N"), Some((Some(32632), false)));
-        assert_eq!(of("WGS84 UTM 7S"), Some((Some(32707), false)));
-        let proj = "+proj=utm +zone=10 +ellps=WGS84 +datum=WGS84 +units=m +no_defs";
-        assert_eq!(of(proj), Some((Some(32610), false)));
-        assert_eq!(of("+proj=longlat +datum=WGS84"), Some((None, true)));
-        assert_eq!(of("epsg:4326"), Some((Some(4326), true)));
-        assert_eq!(of("+proj=tmerc +lat_0=0 +lon_0=9"), Some((None, false)));
-        assert_eq!(of("+proj=lcc +units=us-ft"), None);
-        assert_eq!(of("432150.0 5412300.0 120.0 10 20 a.jpg"), None);
-    }
-
-    #[test]
     fn geographic_coordinates_become_metres() {
         let text = "EPSG:4326\n8.4 49.0 100 1 2 a.jpg p\n8.4 49.001 110 3 4 a.jpg q\n";
         let control = read(text).unwrap();
@@ -267,6 +267,32 @@ mod tests {
     }
 
     #[test]
+    fn feet_become_metres() {
+        let point = "757900.176 2956038.381 1085.956 1 2 a.jpg p\n";
+        let us = 1200.0 / 3937.0;
+        for (system, plan, height) in [
+            ("EPSG:2249", us, us),
+            ("EPSG:2249+5703", us, 1.0),
+            ("EPSG:2249+6360", us, us),
+            ("EPSG:2223", 0.3048, 0.3048),
+            ("EPSG:26986", 1.0, 1.0),
+            ("+proj=lcc +lat_0=41 +units=us-ft", us, us),
+            (
+                "+proj=lcc +lat_0=41 +to_meter=0.3048 +vunits=m",
+                0.3048,
+                1.0,
+            ),
+            ("PROJCS[\"x\",UNIT[\"Foot_US\",0.3048006096012192]]", us, us),
+        ] {
+            let control = read(&format!("{system}\n{point}")).unwrap();
+            let place = control.points[0].position + control.offset;
+            let truth = Point3::new(757_900.176 * plan, 2_956_038.381 * plan, 1085.956 * height);
+            assert!((place - truth).norm() < 1e-6, "{system}: {place}");
+            assert_eq!(control.points[0].stated[0], 757_900.176);
+        }
+    }
+
+    #[test]
     fn what_is_wrong_is_named_with_its_line() {
         for (text, words) in [
             ("", "a reference system in the first line"),
@@ -275,6 +301,12 @@ mod tests {
             ("EPSG:25832\n1 2 high 4 5 a.jpg", "line 2"),
             ("EPSG:25832\n1 2 3 4 5 a.jpg p\n1 2 4 4 5 b.jpg p", "line 3"),
             ("EPSG:4326\n432100 5412300 3 4 5 a.jpg p", "longitudes"),
+            ("EPSG:6318\n432100 5412300 3 4 5 a.jpg p", "longitudes"),
+            ("EPSG:4326\n-35.3 149.1 3 4 5 a.jpg p", "latitude before"),
+            (
+                "+proj=lcc +units=cubit\n1 2 3 4 5 a.jpg",
+                "a reference system",
+            ),
         ] {
             let message = read(text).unwrap_err().to_string();
             assert!(message.contains(words), "{message}");

@@ -26,6 +26,8 @@ pub struct PhotoMetadata {
     pub taken: Option<String>,
     /// Longitude and latitude, degrees, WGS84.
     pub position: Option<[f64; 2]>,
+    /// Is the position without the letters of its hemispheres? It counts as north and east then.
+    pub lacks_hemispheres: bool,
     /// Height of the position, metres above whatever the receiver takes for zero.
     pub height_m: Option<f64>,
     /// Yaw (from north, clockwise), pitch (0 level, -90 down) and roll of the camera, degrees.
@@ -45,6 +47,10 @@ impl PhotoMetadata {
         };
         let tags = exif.and_then(Tags::read).unwrap_or_default();
         let xmp = xmp.map(String::from_utf8_lossy).unwrap_or_default();
+        // XMP states degrees with their sign.
+        let signed = xmp::position(&xmp).filter(|_| !tags.has_hemispheres);
+        let is_place = |p: &[f64; 2]| p[0].abs() <= 180.0 && p[1].abs() <= 90.0 && *p != [0.0, 0.0];
+        let position = signed.or(tags.position).filter(is_place);
         Self {
             camera: [&tags.make, &tags.model]
                 .map(|s| s.as_str())
@@ -54,9 +60,12 @@ impl PhotoMetadata {
             focal_mm: tags.focal_mm.filter(is_positive),
             focal_px: focal_px(&tags, xmp::number(&xmp, "CalibratedFocalLength"), size),
             taken: tags.taken.as_deref().and_then(date_and_time),
-            position: (tags.position)
-                .filter(|p| p[0].abs() <= 180.0 && p[1].abs() <= 90.0 && *p != [0.0, 0.0]),
-            height_m: tags.height_m,
+            lacks_hemispheres: position.is_some() && signed.is_none() && !tags.has_hemispheres,
+            height_m: (tags.height_m.filter(|h| *h != 0.0))
+                .or_else(|| xmp::number(&xmp, "AbsoluteAltitude"))
+                .or(tags.height_m)
+                .filter(|_| position.is_some()),
+            position,
             yaw_pitch_roll: xmp::yaw_pitch_roll(&xmp),
         }
     }
@@ -155,8 +164,31 @@ mod tests {
             let [lon, lat] = stated.position.unwrap();
             assert!((lon + 82.697_394).abs() < 1e-6 && (lat - 28.041_25).abs() < 1e-6);
             assert_eq!(stated.height_m, Some(5.5));
+            assert!(!stated.lacks_hemispheres);
             assert_eq!(stated.yaw_pitch_roll, Some([91.5, -89.9, 0.0]));
         }
+    }
+
+    #[test]
+    fn a_number_that_is_none_leaves_the_others() {
+        let whole = head(b"II");
+        let with = |old: &[u8], new: &[u8]| {
+            let at = whole.windows(old.len()).position(|w| w == old).unwrap();
+            let mut bytes = whole.clone();
+            bytes[at..at + old.len()].copy_from_slice(new);
+            PhotoMetadata::read(&bytes, [800, 600])
+        };
+        let numbers = |pair: [u32; 2]| pair.map(u32::to_le_bytes).concat();
+        let none = numbers([0, 0]);
+        let seconds = with(&numbers([285, 10]), &none).position.unwrap();
+        assert!((seconds[1] - 28.0 - 2.0 / 60.0).abs() < 1e-9, "{seconds:?}");
+        let height = with(&numbers([55, 10]), &none);
+        assert_eq!(height.height_m, None);
+        assert!(height.position.is_some());
+        assert_eq!(with(&numbers([28, 1]), &none).position, None);
+        // Another tag where the letter of the latitude was.
+        let unnamed = with(b"\x01\0\x02\0\x02\0\0\0N", b"\xff\xee\x02\0\x02\0\0\0N");
+        assert!(unnamed.lacks_hemispheres && unnamed.position.is_some());
     }
 
     #[test]

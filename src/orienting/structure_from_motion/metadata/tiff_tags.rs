@@ -15,6 +15,8 @@ pub(super) struct Tags {
     pub taken: Option<String>,
     /// Longitude, latitude.
     pub position: Option<[f64; 2]>,
+    /// Are the letters of both hemispheres stated?
+    pub has_hemispheres: bool,
     pub height_m: Option<f64>,
 }
 
@@ -72,32 +74,42 @@ impl Tags {
             }
         }
         tags.pixels_per_mm = tags.pixels_per_mm.map(|n| n / unit_mm);
-        if let Some((position, height_m)) = position(&reader, &gps) {
-            tags.position = Some(position);
-            tags.height_m = height_m;
-        }
+        tags.set_position(&reader, &gps);
         Some(tags)
     }
 }
 
-/// Longitude and latitude, and the height where it is stated.
-fn position(reader: &Reader, gps: &[Entry]) -> Option<([f64; 2], Option<f64>)> {
-    let of = |tag: u16| gps.iter().find(|e| e.tag == tag);
-    let angle = |tag: u16| match reader.numbers(of(tag)?)[..] {
-        [degrees, minutes, seconds] => Some(degrees + minutes / 60.0 + seconds / 3600.0),
-        _ => None,
-    };
-    let sign = |tag: u16, negative: u8| match of(tag).and_then(|e| e.value.first()) {
-        Some(letter) if letter.eq_ignore_ascii_case(&negative) => -1.0,
-        _ => 1.0,
-    };
-    let is_below = of(5).and_then(|e| e.value.first()) == Some(&1);
-    let height = of(6).and_then(|e| reader.numbers(e).first().copied());
-    // Drones write a height above the sea as one below it where its sign does not fit.
-    let height = height.map(|h| if is_below && h > 0.0 { -h } else { h });
-    let position = [angle(4)? * sign(3, b'W'), angle(2)? * sign(1, b'S')];
-    let mut numbers = position.iter().chain(&height);
-    numbers.all(|v| v.is_finite()).then_some((position, height))
+impl Tags {
+    /// Longitude, latitude and height, each for itself: one that is no number leaves the others.
+    fn set_position(&mut self, reader: &Reader, gps: &[Entry]) {
+        let of = |tag: u16| gps.iter().find(|e| e.tag == tag);
+        let angle = |tag: u16| {
+            let numbers = reader.numbers(of(tag)?);
+            // Decimal minutes leave 0/0 for the seconds, and decimal degrees for both.
+            let finer = |i: usize| numbers.get(i).copied().filter(|v| v.is_finite());
+            let parts = [finer(0)?, finer(1).unwrap_or(0.0), finer(2).unwrap_or(0.0)];
+            Some(parts[0] + parts[1] / 60.0 + parts[2] / 3600.0)
+        };
+        let sign = |tag: u16, [positive, negative]: [u8; 2]| {
+            let letter = of(tag)?.value.first()?.to_ascii_uppercase();
+            match letter {
+                _ if letter == positive => Some(1.0),
+                _ if letter == negative => Some(-1.0),
+                _ => None,
+            }
+        };
+        let signs = [sign(3, *b"EW"), sign(1, *b"NS")];
+        self.has_hemispheres = signs.iter().all(Option::is_some);
+        let [east, north] = signs.map(|sign| sign.unwrap_or(1.0));
+        self.position = angle(4)
+            .zip(angle(2))
+            .map(|(lon, lat)| [lon * east, lat * north]);
+        let is_below = of(5).and_then(|e| e.value.first()) == Some(&1);
+        let height = of(6).and_then(|e| reader.numbers(e).first().copied());
+        // Drones write a height above the sea as one below it where its sign does not fit.
+        let signed = height.map(|h| if is_below && h > 0.0 { -h } else { h });
+        self.height_m = signed.filter(|h| h.is_finite());
+    }
 }
 
 fn text(value: &[u8]) -> String {

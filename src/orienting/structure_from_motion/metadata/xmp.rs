@@ -22,6 +22,13 @@ pub(super) fn number(xmp: &str, name: &str) -> Option<f64> {
     None
 }
 
+/// Longitude and latitude as drones write them beside EXIF, degrees with their sign.
+pub(super) fn position(xmp: &str) -> Option<[f64; 2]> {
+    // One maker's firmware misspells the name.
+    let lon = number(xmp, "GpsLongitude").or_else(|| number(xmp, "GpsLongtitude"))?;
+    Some([lon, number(xmp, "GpsLatitude")?])
+}
+
 /// Angles of the gimbal, or of the camera where it is fixed.
 pub(super) fn yaw_pitch_roll(xmp: &str) -> Option<[f64; 3]> {
     let all = |names: [&str; 3]| {

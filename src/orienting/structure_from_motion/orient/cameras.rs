@@ -1,12 +1,17 @@
 //! What the headers state: which camera took a photograph, where, and in which direction.
 
-use nalgebra::{Point3, Rotation3};
+use nalgebra::Point3;
 
 use super::options::OrientOptions;
 use super::photo::Photo;
-use crate::orienting::orientation::{Anchor, geocentric_of, rotation_from_yaw_pitch_roll};
-use crate::orienting::structure_from_motion::frame::StatedPose;
+use crate::base::error::listed as names;
+use crate::base::geometry::mean_point;
+use crate::base::math::median;
+use crate::orienting::orientation::{Anchor, geocentric_of};
+use crate::orienting::structure_from_motion::frame::{StatedPose, rotation_of_angles};
+use crate::orienting::structure_from_motion::ground_control::{GeoList, GeoPlace};
 use crate::orienting::structure_from_motion::intrinsics::Intrinsics;
+use crate::orienting::structure_from_motion::metadata::PhotoMetadata;
 
 /// The cameras that took the photographs.
 #[derive(Clone, Debug, Default)]
@@ -53,28 +58,114 @@ impl Cameras {
     }
 }
 
-/// Stated positions in a frame that touches the Earth, and angles.
-pub(super) fn stated_poses(photos: &[Photo]) -> (Vec<StatedPose>, Option<Anchor>) {
-    let geocentric = |photo: &Photo| {
-        let [lon, lat] = photo.metadata.position?;
-        Some(geocentric_of(
-            lon,
-            lat,
-            photo.metadata.height_m.unwrap_or(0.0),
-        ))
+/// What is stated of the photographs, in a frame that touches the Earth.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Stated {
+    pub poses: Vec<StatedPose>,
+    /// Zero of the positions.
+    pub anchor: Option<Anchor>,
+    /// What is doubtful of it.
+    pub notes: Vec<String>,
+}
+
+/// What the headers state, or a list of places instead.
+pub(super) fn stated_of(photos: &[Photo], list: Option<&GeoList>) -> Stated {
+    let paths: Vec<&str> = photos.iter().map(|p| p.path.as_str()).collect();
+    let (listed, unknown) = list
+        .map(|list| list.of_photographs(&paths))
+        .unwrap_or_default();
+    let place = |i: usize| listed.get(i).copied().flatten();
+    let headers: Vec<PhotoMetadata> = (photos.iter().enumerate())
+        .map(|(i, photo)| with_place(&photo.metadata, place(i)))
+        .collect();
+    let mut notes: Vec<String> = list
+        .and_then(|list| list.problem.clone())
+        .into_iter()
+        .collect();
+    if !unknown.is_empty() {
+        notes.push(format!(
+            "{} names photographs that are not there or several of one name: {}",
+            GeoList::FILE,
+            names(unknown)
+        ));
+    }
+    notes.extend(doubtful_positions(&headers, &paths));
+    // A receiver measures no height of exactly 0; what fills an empty field does.
+    let height = |m: &PhotoMetadata| m.height_m.filter(|h| *h != 0.0);
+    let known = headers.iter().filter(|m| m.position.is_some());
+    let mut heights: Vec<f64> = known.filter_map(height).collect();
+    // Where a height is not known any near the others does: it does not count.
+    let middle = median(&mut heights).unwrap_or(0.0);
+    let geocentric = |m: &PhotoMetadata| {
+        let [lon, lat] = m.position?;
+        Some(geocentric_of(lon, lat, height(m).unwrap_or(middle)))
     };
-    let all: Vec<Point3<f64>> = photos.iter().filter_map(geocentric).collect();
-    let anchor = (!all.is_empty()).then(|| Anchor::near(&crate::base::geometry::mean_point(&all)));
-    let rotation = |photo: &Photo| -> Option<Rotation3<f64>> {
-        let [yaw, pitch, roll] = photo.metadata.yaw_pitch_roll?.map(f64::to_radians);
-        let from_below = pitch + std::f64::consts::FRAC_PI_2;
-        Some(rotation_from_yaw_pitch_roll(yaw, from_below, roll))
-    };
-    let stated = (photos.iter())
-        .map(|photo| StatedPose {
-            position: anchor.and_then(|anchor| Some(anchor.local(&geocentric(photo)?))),
-            rotation: rotation(photo),
+    let all: Vec<Point3<f64>> = headers.iter().filter_map(geocentric).collect();
+    let anchor = (!all.is_empty()).then(|| Anchor::near(&mean_point(&all)));
+    let poses = (headers.iter().enumerate())
+        .map(|(i, m)| StatedPose {
+            position: anchor.and_then(|anchor| Some(anchor.local(&geocentric(m)?))),
+            lacks_height: height(m).is_none(),
+            sigma_m: place(i).and_then(|place| place.sigma_m),
+            rotation: m.yaw_pitch_roll.map(rotation_of_angles),
+            yaw_pitch_roll: m.yaw_pitch_roll,
         })
         .collect();
-    (stated, anchor)
+    Stated {
+        poses,
+        anchor,
+        notes,
+    }
+}
+
+/// A header in which what a list states stands.
+fn with_place(header: &PhotoMetadata, place: Option<&GeoPlace>) -> PhotoMetadata {
+    let header = header.clone();
+    match place {
+        Some(place) => PhotoMetadata {
+            position: Some(place.position),
+            height_m: place.height_m,
+            lacks_hemispheres: false,
+            yaw_pitch_roll: place.yaw_pitch_roll.or(header.yaw_pitch_roll),
+            ..header
+        },
+        None => header,
+    }
+}
+
+/// Positions that lack a part.
+fn doubtful_positions(headers: &[PhotoMetadata], paths: &[&str]) -> Vec<String> {
+    let with = |is_so: fn(&PhotoMetadata) -> bool| -> Vec<&str> {
+        let both = headers.iter().zip(paths);
+        both.filter(|(m, _)| m.position.is_some() && is_so(m))
+            .map(|(_, path)| *path)
+            .collect()
+    };
+    let all = with(|_| true).len();
+    let mut notes = Vec::new();
+    let unsigned = with(|m| m.lacks_hemispheres);
+    if !unsigned.is_empty() {
+        notes.push(format!(
+            "{} of {all} positions do not state whether they are north or south, east or west: they \
+             count as north and east ({}); write GPSLatitudeRef and GPSLongitudeRef into the headers",
+            unsigned.len(),
+            names(unsigned)
+        ));
+    }
+    for (lacking, what) in [
+        (with(|m| m.height_m.is_none()), "state no height"),
+        (
+            with(|m| m.height_m == Some(0.0)),
+            "state a height of 0, which no receiver measures",
+        ),
+    ] {
+        if !lacking.is_empty() {
+            notes.push(format!(
+                "{} of {all} positions {what}: of these only the plan counts ({})",
+                lacking.len(),
+                names(lacking)
+            ));
+        }
+    }
+    notes
 }

@@ -5,7 +5,7 @@ use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
 use super::adjustment::calibrate_center;
-use super::cameras::{Cameras, stated_poses};
+use super::cameras::{Cameras, Stated, stated_of};
 use super::hypotheses::{Hypothesis, guesses, register_likeliest};
 use super::options::{OrientOptions, Oriented};
 use super::photo::{Photo, ReadPhoto};
@@ -18,12 +18,14 @@ use crate::base::execution::Listener;
 use crate::base::execution::{
     MergedShards, Origin, ShardTask, Sharded, run_merged, run_shard, with_listener,
 };
-use crate::orienting::orientation::Anchor;
+use crate::orienting::orientation::InputFile;
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::bundle::covariance;
 use crate::orienting::structure_from_motion::features::Features;
-use crate::orienting::structure_from_motion::frame::{FrameBasis, StatedPose, to_frame};
-use crate::orienting::structure_from_motion::ground_control::{GroundControl, to_control};
+use crate::orienting::structure_from_motion::frame::{FrameBasis, NOTHING_STATED, to_frame};
+use crate::orienting::structure_from_motion::ground_control::{
+    Beside, GeoList, GroundControl, to_control,
+};
 use crate::orienting::structure_from_motion::incremental::VerifiedPair;
 use crate::orienting::structure_from_motion::intrinsics::Intrinsics;
 use crate::orienting::structure_from_motion::matching::candidate_pairs;
@@ -68,8 +70,7 @@ pub type OnBlock<'a> = &'a mut dyn FnMut(Snapshot);
 /// What the pairs of the photographs say.
 struct Connected {
     cameras: Cameras,
-    stated: Vec<StatedPose>,
-    anchor: Option<Anchor>,
+    stated: Stated,
     /// One, or several where the focal length is guessed; the likeliest by the pairs first.
     hypotheses: Vec<Hypothesis>,
 }
@@ -83,6 +84,7 @@ pub struct OrientChain {
     left_out: Vec<LeftOut>,
     connected: Option<Connected>,
     control: Option<GroundControl>,
+    places: Option<GeoList>,
 }
 
 impl OrientChain {
@@ -94,12 +96,23 @@ impl OrientChain {
             left_out: Vec::new(),
             connected: None,
             control: None,
+            places: None,
         }
     }
 
-    /// Takes ground control points, which give the frame of what [`orient`](Self::orient) returns.
-    pub fn set_control(&mut self, control: Option<GroundControl>) {
-        self.control = control;
+    /// Takes the lists among files: ground control points, which give the frame of what
+    /// [`orient`](Self::orient) returns, and places of photographs, which count instead of those in
+    /// their headers. Others stay as they were.
+    ///
+    /// # Errors
+    /// Where one of them cannot be read; the message names the line.
+    pub fn set_lists(&mut self, files: &[InputFile]) -> Result<()> {
+        self.control = GroundControl::among(files)?.or(self.control.take());
+        if let Some(places) = GeoList::among(files)? {
+            self.connected = None;
+            self.places = Some(places);
+        }
+        Ok(())
     }
 
     /// How photographs are to be read.
@@ -184,8 +197,8 @@ impl OrientChain {
 
     fn connected(&self) -> Sharded<Connected> {
         let cameras = Cameras::of(&self.photos, &self.options);
-        let (stated, anchor) = stated_poses(&self.photos);
-        let positions: Vec<Option<Point3<f64>>> = stated.iter().map(|s| s.position).collect();
+        let stated = stated_of(&self.photos, self.places.as_ref());
+        let positions: Vec<Option<Point3<f64>>> = stated.poses.iter().map(|s| s.position).collect();
         let features: Vec<&Features> = self.photos.iter().map(|p| &p.features).collect();
         let candidates = candidate_pairs(&features, &positions, 0.4..0.45)?;
         let matched = self.matched(&cameras);
@@ -199,7 +212,6 @@ impl OrientChain {
         Ok(Connected {
             cameras,
             stated,
-            anchor,
             hypotheses: hypotheses
                 .map(|(guess, verified)| Hypothesis { guess, verified })
                 .collect(),
@@ -268,12 +280,11 @@ impl OrientChain {
         let Connected {
             cameras,
             stated,
-            anchor,
             hypotheses,
         } = connected;
         let mut show = |block: &Block| {
             if let Some(on_block) = &mut on_block {
-                on_block(Snapshot::of(block, &self.photos, stated, *anchor));
+                on_block(Snapshot::of(block, &self.photos, stated));
             }
         };
         let (mut block, place) =
@@ -297,7 +308,7 @@ impl OrientChain {
         let is_held = self.options.holds_center;
         let adjusted = calibrate_center(&mut block, means, is_guessed, is_held);
         let paths: Vec<&str> = self.photos.iter().map(|p| p.path.as_str()).collect();
-        let (basis, no_control) = self.to_its_frame(&mut block, &paths, connected);
+        let (basis, notes) = self.to_its_frame(&mut block, &paths, stated);
         // The covariance belongs to the frame.
         let covariance = adjusted.and_then(|options| covariance(&block, means, &options));
         let before = cameras.or_guessed(means);
@@ -310,26 +321,46 @@ impl OrientChain {
             cameras: cameras.names.clone(),
             means: &before,
             is_guessed: &cameras.is_guessed,
-            stated,
+            stated: &stated.poses,
         };
         let model = sparse_model(&block, &names, &basis);
         let mut report = report(&block, &names, &basis, covariance.as_ref(), left_out);
-        report.warnings.extend(no_control);
+        // That nothing is stated is no fault of it.
+        let (nothing, doubts): (Vec<_>, Vec<_>) =
+            notes.into_iter().partition(|note| note == NOTHING_STATED);
+        report.frame += &nothing
+            .iter()
+            .map(|note| format!("; {note}"))
+            .collect::<String>();
+        report.warnings.extend(doubts);
         Ok(Oriented { model, report })
     }
 
     /// Brings a block into the frame of the ground control, or else of what the headers state; with
-    /// why that of the control is none.
+    /// what is doubtful of them.
     fn to_its_frame(
         &self,
         block: &mut Block,
         paths: &[&str],
-        Connected { stated, anchor, .. }: &Connected,
-    ) -> (FrameBasis, Option<String>) {
-        let control = self.control.as_ref();
-        match control.map(|c| to_control(block, paths, c)).transpose() {
-            Ok(Some(basis)) => (basis, None),
-            other => (to_frame(block, stated, *anchor), other.err()),
+        stated: &Stated,
+    ) -> (FrameBasis, Vec<String>) {
+        let applies_fix = self.options.applies_fix;
+        let mut notes = stated.notes.clone();
+        if let Some(control) = &self.control {
+            let beside = Beside {
+                paths,
+                stated: &stated.poses,
+                anchor: stated.anchor,
+                applies_fix,
+            };
+            let (basis, words) = to_control(block, control, &beside);
+            notes.extend(words);
+            if let Some(basis) = basis {
+                return (basis, notes);
+            }
         }
+        let (basis, words) = to_frame(block, &stated.poses, stated.anchor, applies_fix, paths);
+        notes.extend(words);
+        (basis, notes)
     }
 }

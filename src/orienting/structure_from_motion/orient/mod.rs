@@ -28,15 +28,14 @@ pub use snapshot::{Snapshot, SnapshotPhoto};
 use crate::base::error::Result;
 use crate::base::execution::{MergedShards, map_part};
 use crate::orienting::orientation::InputFile;
-use crate::orienting::structure_from_motion::ground_control::GroundControl;
 use crate::photographs::raster::image_format;
 
 /// Orients the photographs among the files. Positions in the result are metres where the
 /// photographs state theirs, z is up; pixels as in all of this crate. A `gcp_list.txt` among the
-/// files gives the frame.
+/// files gives the frame, a `geo.txt` the places of photographs.
 ///
 /// # Errors
-/// Where fewer than three photographs can be oriented, or ground control points cannot be read; the
+/// Where fewer than three photographs can be oriented, or one of these lists cannot be read; the
 /// message says why.
 pub fn orient(files: &[InputFile], options: &OrientOptions) -> Result<Oriented> {
     let images: Vec<&InputFile> = (files.iter())
@@ -44,7 +43,7 @@ pub fn orient(files: &[InputFile], options: &OrientOptions) -> Result<Oriented> 
         .collect();
     let mut chain = OrientChain::new(options.clone());
     chain.has_enough(images.len())?;
-    chain.set_control(GroundControl::among(files)?);
+    chain.set_lists(files)?;
     for photo in map_part(&images, 0.0..0.4, |_, file| ReadPhoto::read(file, options)) {
         chain.add(photo);
     }

@@ -17,6 +17,9 @@ pub struct OrientOptions {
     /// Keep the principal point in the middle of the photographs, also where the block determines
     /// it.
     pub holds_center: bool,
+    /// Read a list of control points or stated angles whose usual mistake is known as they were
+    /// meant, instead of leaving them out.
+    pub applies_fix: bool,
 }
 
 /// Oriented photographs.

@@ -84,7 +84,7 @@ enum Packed {
     Read {
         path: String,
         size: [u32; 2],
-        metadata: PhotoMetadata,
+        metadata: Box<PhotoMetadata>,
         keypoints: Vec<Keypoint>,
         /// One after the other.
         descriptors: Vec<u8>,
@@ -136,7 +136,7 @@ impl ReadPhoto {
             Ok(photo) => Packed::Read {
                 path: photo.path.clone(),
                 size: photo.size,
-                metadata: photo.metadata.clone(),
+                metadata: Box::new(photo.metadata.clone()),
                 keypoints: photo.features.keypoints.clone(),
                 descriptors: photo.features.descriptors.as_flattened().to_vec(),
                 colours: photo.colours.clone(),
@@ -177,7 +177,7 @@ impl ReadPhoto {
                 Ok(Photo {
                     path,
                     size,
-                    metadata,
+                    metadata: *metadata,
                     features: Features {
                         keypoints,
                         descriptors: descriptors.to_vec(),

@@ -2,10 +2,10 @@
 
 use nalgebra::Point3;
 
+use super::cameras::Stated;
 use super::photo::Photo;
-use crate::orienting::orientation::Anchor;
 use crate::orienting::structure_from_motion::block::{Block, Pose};
-use crate::orienting::structure_from_motion::frame::{StatedPose, to_frame};
+use crate::orienting::structure_from_motion::frame::to_frame;
 use crate::orienting::structure_from_motion::intrinsics::Intrinsics;
 
 /// A photograph of a growing block.
@@ -29,14 +29,10 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    pub(super) fn of(
-        block: &Block,
-        photos: &[Photo],
-        stated: &[StatedPose],
-        anchor: Option<Anchor>,
-    ) -> Self {
+    pub(super) fn of(block: &Block, photos: &[Photo], stated: &Stated) -> Self {
         let mut block = block.clone();
-        to_frame(&mut block, stated, anchor);
+        let paths: Vec<&str> = photos.iter().map(|p| p.path.as_str()).collect();
+        to_frame(&mut block, &stated.poses, stated.anchor, false, &paths);
         let oriented = (block.photos.iter().zip(photos)).filter_map(|(of_block, photo)| {
             Some(SnapshotPhoto {
                 path: photo.path.clone(),

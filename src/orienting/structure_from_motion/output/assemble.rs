@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
 use super::report::{CameraReport, LeftOut, OrientReport, PhotoReport};
 use super::sparse_model::{OrientedPhoto, SparseModel, SparsePoint};
-use crate::orienting::orientation::Anchor;
+use crate::orienting::orientation::{Anchor, LinearUnit};
 use crate::orienting::structure_from_motion::block::{Block, Track};
 use crate::orienting::structure_from_motion::bundle::Covariance;
 use crate::orienting::structure_from_motion::frame::{FrameBasis, StatedPose};
@@ -93,6 +93,10 @@ pub(in super::super) fn sparse_model(
             FrameBasis::Control { offset, .. } => (*offset).into(),
             _ => Vector3::zeros(),
         },
+        unit: match basis {
+            FrameBasis::Control { unit, .. } => *unit,
+            _ => LinearUnit::METRE,
+        },
     }
 }
 
@@ -121,27 +125,29 @@ pub(in super::super) fn report(
         .collect();
     let rays_a_point = total as f64 / counts.points.max(1) as f64;
     let (frame, anchor, mut warnings) = frame_words(basis);
-    if rays_a_point < FEW_RAYS {
-        warnings.push(format!(
+    warnings.extend((rays_a_point < FEW_RAYS).then(|| {
+        format!(
             "only {rays_a_point:.1} photographs show a point on average: take more of them, with \
              more overlap"
-        ));
-    }
+        )
+    }));
     let cameras = cameras(block, names, covariance);
     warnings.extend(cameras.iter().filter_map(contradiction));
-    let (epsg, offset, control) = match basis {
+    let (epsg, unit_m, offset, control) = match basis {
         FrameBasis::Control {
             epsg,
+            unit,
             offset,
             points,
             ..
-        } => (*epsg, *offset, points.clone()),
-        _ => (None, [0.0; 3], Vec::new()),
+        } => (*epsg, unit.metres, *offset, points.clone()),
+        _ => (None, 1.0, [0.0; 3], Vec::new()),
     };
     OrientReport {
         frame,
         anchor,
         epsg,
+        unit_m,
         offset,
         is_metric: anchor.is_some() || !control.is_empty(),
         control,
@@ -256,7 +262,8 @@ fn from_stated(block: &Block, names: &Names, basis: &FrameBasis, photo: usize) -
         return None;
     }
     let center = block.photos[photo].pose.as_ref()?.center;
-    Some((center - names.stated[photo].position?).into())
+    let stated = names.stated.get(photo).filter(|s| !s.lacks_height)?;
+    Some((center - stated.position?).into())
 }
 
 fn deviations(covariance: &Matrix3<f64>) -> [f64; 3] {
@@ -278,12 +285,41 @@ fn metres_from(anchor: &Anchor) -> String {
     )
 }
 
+/// A frame by stated positions.
+fn positions_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) {
+    let FrameBasis::Positions {
+        anchor,
+        agreeing,
+        stated,
+        heights,
+        rms_m: [plan, height],
+        is_levelled,
+    } = basis
+    else {
+        return Default::default();
+    };
+    let levelled = "the stated positions lie on one line: the slope across it follows from \
+                            the angles or the ground";
+    let warnings = (*is_levelled && *heights > 0).then(|| levelled.to_owned());
+    let of_heights = match heights {
+        0 => "; heights count from the ground".to_owned(),
+        _ => format!(", {height:.2} m in height (an offset common to all heights cannot be seen)"),
+    };
+    let words = format!(
+        "{}: the stated positions of {agreeing} of {stated} photographs, rms {plan:.2} m in \
+                 plan{of_heights}",
+        metres_from(anchor)
+    );
+    (words, Some(*anchor), warnings.into_iter().collect())
+}
+
 /// A frame in words, the place that it counts from, and what is to be said against it.
 fn frame_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) {
     match basis {
         FrameBasis::Control {
             system,
             anchor,
+            unit,
             offset: [east, north, _],
             points,
             rms_m: [plan, height],
@@ -292,7 +328,8 @@ fn frame_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) {
             let agreeing = points.iter().filter(|p| p.agrees).count();
             let frame = match anchor {
                 Some(anchor) => metres_from(anchor),
-                None => format!("{system}, x from {east} and y from {north} m"),
+                None if unit.is_metre() => format!("{system}, x from {east} and y from {north} m"),
+                None => format!("{system}, whose unit the files have: {}", unit.words()),
             };
             let words = format!(
                 "{frame}: {agreeing} of {} ground control points, rms {plan:.3} m in plan, \
@@ -301,33 +338,20 @@ fn frame_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) {
             );
             (words, *anchor, control_warnings(points))
         }
-        FrameBasis::Positions {
-            anchor,
-            agreeing,
-            stated,
-            rms_m: [plan, height],
-            is_levelled,
-        } => {
-            let levelled = "the stated positions lie on one line: the slope across it follows from \
-                            the angles or the ground";
-            let warnings = is_levelled.then(|| levelled.to_owned());
-            let words = format!(
-                "{}: the stated positions of {agreeing} of {stated} photographs, rms {plan:.2} m in \
-                 plan, {height:.2} m in height (an offset common to all heights cannot be seen)",
-                metres_from(anchor)
-            );
-            (words, Some(*anchor), warnings.into_iter().collect())
-        }
-        FrameBasis::Angles { rms_deg } => (
+        FrameBasis::Positions { .. } => positions_words(basis),
+        FrameBasis::Angles {
+            rms_deg,
+            photos: [agreeing, stated],
+        } => (
             format!(
-                "z up by the stated angles of the cameras (rms {rms_deg:.2} degrees); no positions"
+                "z up by the stated angles of {agreeing} of {stated} photographs (rms {rms_deg:.2} \
+                 degrees); no positions"
             ),
             None,
             vec![ARBITRARY_SCALE.to_owned()],
         ),
         FrameBasis::MainPlane => (
-            "z up across the main plane of the points; neither positions nor angles are stated"
-                .to_owned(),
+            "z up across the main plane of the points".to_owned(),
             None,
             vec![ARBITRARY_SCALE.to_owned()],
         ),

@@ -113,6 +113,8 @@ pub struct OrientReport {
     pub anchor: Option<crate::orienting::orientation::Anchor>,
     /// EPSG code of the frame's map, where it is known.
     pub epsg: Option<u32>,
+    /// Metres of the unit of that map, in which files state positions; those here are metres.
+    pub unit_m: f64,
     /// What files in the frame's map add to the coordinates of the model, metres.
     pub offset: [f64; 3],
     /// Is the scale that of the world?

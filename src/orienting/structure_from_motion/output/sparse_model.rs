@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
+use crate::orienting::orientation::LinearUnit;
 use crate::orienting::structure_from_motion::block::Pose;
 use crate::orienting::structure_from_motion::intrinsics::Intrinsics;
 
@@ -44,6 +45,8 @@ pub struct SparseModel {
     pub points: Vec<SparsePoint>,
     /// What the files add to all positions, metres: coordinates on a map keep their digits so.
     pub offset: Vector3<f64>,
+    /// The unit of positions in the files: that of the map.
+    pub unit: LinearUnit,
 }
 
 impl SparseModel {
@@ -69,13 +72,19 @@ impl SparseModel {
         text
     }
 
+    /// A position in the coordinates of the files.
+    fn in_files(&self, position: &Point3<f64>) -> Point3<f64> {
+        (position + self.offset) / self.unit.metres
+    }
+
     fn images(&self) -> String {
         let mut text = "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n\
                         # POINTS2D[] as X Y POINT3D_ID\n"
             .to_owned();
         for (i, photo) in self.photos.iter().enumerate() {
             let q = UnitQuaternion::from_rotation_matrix(&photo.pose.rotation);
-            let t = -(photo.pose.rotation * (photo.pose.center.coords + self.offset));
+            let center = self.in_files(&photo.pose.center);
+            let t = -(photo.pose.rotation * center.coords);
             let _ = writeln!(
                 text,
                 "{} {} {} {} {} {} {} {} {} {}",
@@ -103,7 +112,7 @@ impl SparseModel {
         let mut text =
             "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n".to_owned();
         for (i, point) in self.points.iter().enumerate() {
-            let (p, [r, g, b]) = (point.position + self.offset, point.rgb);
+            let (p, [r, g, b]) = (self.in_files(&point.position), point.rgb);
             let _ = write!(
                 text,
                 "{} {:.5} {:.5} {:.5} {r} {g} {b} {:.4}",

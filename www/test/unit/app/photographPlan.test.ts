@@ -12,6 +12,7 @@ it("lays positions out in metres, in the order of their times", async () => {
       taken: `2024-01-01 12:00:0${second}`,
       position,
       height_m: null,
+      lacks_hemispheres: false,
       yaw_pitch_roll: null,
     },
   });

@@ -66,7 +66,7 @@ describe("an orientation by several workers", () => {
 
   it("gives the first a list of ground control points before anything else", async () => {
     const list = { path: "gcp_list.txt", blob: new Blob() };
-    await new OrientationRun().orient(photographs, list, 2, {}, silent);
+    await new OrientationRun().orient(photographs, [list], 2, {}, silent);
     const [first, second] = FakeWorker.made as [FakeWorker, FakeWorker];
     expect(first.asked[1]).toMatch(/^readControl gcp_list.txt/);
     expect(second.asked.filter((words) => words.startsWith("readControl"))).toEqual([]);
@@ -75,7 +75,7 @@ describe("an orientation by several workers", () => {
   it("deals photographs and pairs, and goes on with one", async () => {
     const run = new OrientationRun();
     const done: number[] = [];
-    await run.orient(photographs, null, 2, {}, { ...silent, onPhoto: (_, count) => done.push(count) });
+    await run.orient(photographs, [], 2, {}, { ...silent, onPhoto: (_, count) => done.push(count) });
     const [first, second] = FakeWorker.made as [FakeWorker, FakeWorker];
     expect(FakeWorker.made.length).toBe(2);
     expect(done).toEqual([1, 2, 3, 4]);
@@ -98,7 +98,7 @@ describe("an orientation by several workers", () => {
   });
 
   it("needs no shards with one worker", async () => {
-    await new OrientationRun().orient(photographs, null, 1, {}, silent);
+    await new OrientationRun().orient(photographs, [], 1, {}, silent);
     expect(FakeWorker.made[0]?.asked.some((words) => words.startsWith("runShard"))).toBe(false);
   });
 
@@ -106,7 +106,7 @@ describe("an orientation by several workers", () => {
     const run = new OrientationRun();
     const read = ANSWERS["readFile"];
     ANSWERS["readFile"] = () => "never";
-    const ending = run.orient(photographs, null, 2, {}, silent).catch(({ kind }) => kind);
+    const ending = run.orient(photographs, [], 2, {}, silent).catch(({ kind }) => kind);
     await new Promise((resolve) => setTimeout(resolve, 5));
     run.close();
     ANSWERS["readFile"] = read as () => unknown;

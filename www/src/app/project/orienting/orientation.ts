@@ -99,11 +99,11 @@ export async function computeOrientation(): Promise<void> {
     end.addEventListener("abort", reset);
     const paths = new Set(inspection.value?.images.map(({ path }) => path));
     const photographs = files.value.filter(({ path }) => paths.has(path));
-    const control = files.value.find(({ path }) => CONTROL.test(path)) ?? null;
+    const lists = LISTS.flatMap((name) => files.value.find(({ path }) => name.test(path)) ?? []);
     const started = new OrientationRun();
     run = started;
     try {
-      await orientIn(started, photographs, control);
+      await orientIn(started, photographs, lists);
     } catch (error) {
       // What ended it may be another run already.
       if (run === started) {
@@ -114,13 +114,13 @@ export async function computeOrientation(): Promise<void> {
   });
 }
 
-/** A list of ground control points, as OpenDroneMap's. */
-const CONTROL = /(?:^|\/)gcp_list\.txt$/i;
+/** Lists of ground control points and of the photographs' own places, as OpenDroneMap's. */
+const LISTS = [/(?:^|\/)gcp_list\.txt$/i, /(?:^|\/)geo\.txt$/i];
 
 async function orientIn(
   started: OrientationRun,
   photographs: readonly InputFile[],
-  control: InputFile | null,
+  lists: readonly InputFile[],
 ): Promise<void> {
   const reach = (step: Step, fraction: number) => {
     present.progress.value = { step, fraction, photographs: photographs.length };
@@ -128,7 +128,7 @@ async function orientIn(
   reach("keypoints", 0);
   const options = statedFocalPx.value === null ? {} : { focalPx: statedFocalPx.value };
   const workers = workersFor(navigator.hardwareConcurrency ?? 1);
-  const found = await started.orient(photographs, control, workers, options, {
+  const found = await started.orient(photographs, lists, workers, options, {
     onPhoto: (photograph, done) => {
       present.read.value = [...present.read.value, photograph];
       reach("keypoints", done / photographs.length);

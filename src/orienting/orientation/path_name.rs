@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 
 use unicode_normalization::UnicodeNormalization;
 
-use crate::orienting::orientation::stem;
+use super::input_file::stem;
 
 /// Extensions of photographs: what ends in one of them is the whole name of a file.
 const PHOTOGRAPHS: [&str; 12] = [
@@ -104,6 +104,19 @@ impl PathName {
     }
 }
 
+/// The images that a name means, which may leave out folders and extension: those that fit best.
+pub(crate) fn images_called(name: &str, paths: &[PathName]) -> Vec<usize> {
+    let readings = PathName::readings(name);
+    let fits: Vec<_> = paths
+        .iter()
+        .map(|path| readings.iter().filter_map(|name| name.fit(path)).min())
+        .collect();
+    let best = fits.iter().flatten().min();
+    (0..paths.len())
+        .filter(|&i| best.is_some() && fits[i].as_ref() == best)
+        .collect()
+}
+
 /// A path without the escapes of addresses; `None` where it has none.
 fn decoded(path: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(path.len());
@@ -176,5 +189,14 @@ mod tests {
             assert!(!fit.ending.is_other_case, "{stated}");
         }
         assert_eq!(fit("S\u{fc}d.jpg", "Sud.jpg"), None);
+    }
+
+    #[test]
+    fn a_name_means_the_images_that_fit_it_best() {
+        let paths = ["c0/1.jpg", "c1/1.jpg", "masks/2.jpg.png", "c0/2.jpg"].map(PathName::new);
+        assert_eq!(images_called("1", &paths), [0, 1]);
+        assert_eq!(images_called("c1/1.JPG", &paths), [1]);
+        assert_eq!(images_called("2.jpg", &paths), [3]);
+        assert_eq!(images_called("3.jpg", &paths), [0; 0]);
     }
 }
