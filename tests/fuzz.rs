@@ -388,7 +388,7 @@ fn read_known(files: &[InputFile]) {
     };
     let origin = nalgebra::Vector3::new(432_100.0, 5_412_300.0, 0.0);
     for file in files {
-        let terrain = Terrain::read(file, &system, origin, 0.3);
+        let terrain = Terrain::read(file, None, &system, origin, 0.3);
         if let Ok(terrain) = &terrain {
             let z = terrain.z_at(3.0, -2.0);
             assert!(z.is_none_or(f64::is_finite), "{z:?}");

@@ -43,6 +43,10 @@ pub(super) struct InputArgs {
     /// a chunk or block in a file of several; or another folder that holds the orientation.
     #[arg(long, value_name = "PATH")]
     pub orientation: Option<String>,
+    /// Leave these files out: a path in the scene, a name, or a pattern with * (any letters) and ?
+    /// (one letter), as 'odm_dem/*' or '*.laz'; may be given several times.
+    #[arg(long, value_name = "FILE|PATTERN")]
+    pub without: Vec<String>,
     /// Use only these views (image names, separated by commas).
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
     pub views: Option<Vec<String>>,

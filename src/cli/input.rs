@@ -39,6 +39,7 @@ pub(super) fn open(
         beside,
         seen,
     } = read_files(&args.scene, args.orientation.as_deref(), results)?;
+    leave_out(&mut files.files, &args.without).map_err(|e| refusal(&e, &seen))?;
     let stated = project.options;
     let known = |files: &mut SceneFiles, path: &Option<PathBuf>| {
         let path = path.as_deref();
@@ -154,20 +155,80 @@ fn add_orientation(files: &mut Vec<InputFile>, folder: &Path) -> Result<String, 
     Ok(name)
 }
 
-/// Adds a file of what is known, under a folder of its own; its path there is returned.
+/// Adds a file of what is known, under a folder of its own, and the `.prj` of its name beside it;
+/// its path there is returned.
 pub(super) fn add_known(files: &mut Vec<InputFile>, path: &Path) -> Result<String, Failure> {
+    let known = |path: &Path, bytes: Vec<u8>| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        InputFile::new(&format!("known/{name}"), bytes)
+    };
     let bytes = fs::read(path).map_err(|e| {
         let problem = format!("{}: cannot be read: {e}; check the path", path.display());
         Failure::Input(problem)
     })?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let file = InputFile::new(&format!("known/{name}"), bytes);
-    let path = file.path.clone();
-    // That of a project opened again takes the place of the one that it held.
-    files.retain(|other| other.path != path);
-    files.push(file);
+    let file = known(path, bytes);
+    let own = file.path.clone();
+    let beside = ["prj", "PRJ"].map(|extension| path.with_extension(extension));
+    let beside = beside
+        .iter()
+        .find_map(|path| Some(known(path, fs::read(path).ok()?)));
+    for file in [Some(file), beside].into_iter().flatten() {
+        // That of a project opened again takes the place of the one that it held.
+        files.retain(|other| other.path != file.path);
+        files.push(file);
+    }
     files.sort_by(|a, b| a.path.cmp(&b.path));
-    Ok(path)
+    Ok(own)
+}
+
+/// Leaves out the files that patterns name; one that names none is refused.
+fn leave_out(files: &mut Vec<InputFile>, patterns: &[String]) -> ridgeline::Result<()> {
+    for pattern in patterns {
+        let before = files.len();
+        let wanted = pattern.replace('\\', "/");
+        let wanted = wanted.trim_start_matches("./").trim_end_matches('/');
+        let folder = format!("{wanted}/");
+        files.retain(|file| {
+            let is_named = fits(wanted, &file.path) || fits(wanted, file.name());
+            !is_named && !file.path.starts_with(&folder)
+        });
+        if files.len() == before {
+            return Err(ridgeline::Error::Scene {
+                problem: format!("--without {pattern} names none of the files"),
+                advice: "give a path in the scene, a name, or a pattern with * and ?".to_owned(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Does a name fit a pattern, where * stands for any letters and ? for one?
+fn fits(pattern: &str, name: &str) -> bool {
+    let (pattern, name): (Vec<char>, Vec<char>) =
+        (pattern.chars().collect(), name.chars().collect());
+    let (mut p, mut n) = (0, 0);
+    // Where the last * stands, and how far it reaches.
+    let mut star: Option<(usize, usize)> = None;
+    while n < name.len() {
+        match pattern.get(p) {
+            Some('*') => {
+                star = Some((p, n));
+                p += 1;
+            }
+            Some(&c) if c == '?' || c == name[n] => {
+                p += 1;
+                n += 1;
+            }
+            _ => {
+                let Some((at, reach)) = star else {
+                    return false;
+                };
+                star = Some((at, reach + 1));
+                (p, n) = (at + 1, reach + 1);
+            }
+        }
+    }
+    pattern[p..].iter().all(|c| *c == '*')
 }
 
 /// A path relative to the scene's folder, also where the whole path was given.
@@ -221,6 +282,35 @@ pub(super) fn set_threads(threads: Option<u16>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn patterns_name_files_by_path_name_and_folder() {
+        let paths = [
+            "a.laz",
+            "odm_dem/dsm.tif",
+            "odm_dem/dtm.tif",
+            "images/b.jpg",
+        ];
+        for (pattern, left) in [
+            ("*.laz", vec![1, 2, 3]),
+            ("dsm.tif", vec![0, 2, 3]),
+            ("odm_dem/d?m.tif", vec![0, 3]),
+            ("odm_dem", vec![0, 3]),
+            ("./odm_dem/", vec![0, 3]),
+            ("odm*", vec![0, 3]),
+            ("*d*m.t*f", vec![0, 3]),
+            ("images\\b.jpg", vec![0, 1, 2]),
+        ] {
+            let mut files = paths.map(|path| InputFile::new(path, Vec::new())).to_vec();
+            leave_out(&mut files, &[pattern.to_owned()]).unwrap();
+            let found: Vec<&str> = files.iter().map(|file| &*file.path).collect();
+            let expected: Vec<&str> = left.into_iter().map(|i| paths[i]).collect();
+            assert_eq!(found, expected, "{pattern}");
+        }
+        let mut files = vec![InputFile::new("a.laz", Vec::new())];
+        let none = leave_out(&mut files, &["*.las".to_owned()]);
+        assert!(none.unwrap_err().to_string().contains("names none"));
+    }
 
     #[test]
     fn a_whole_path_counts_from_the_scene() {

@@ -6,6 +6,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use ridgeline::orienting::orientation::{FileKind, detect};
 use ridgeline::orienting::scene_loader::unpack;
 
 use super::failure::Failure;
@@ -14,14 +15,15 @@ use super::scene_files::SceneFiles;
 /// Extensions of images.
 const IMAGE_EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
 
-/// Extensions of orientation files; the readers go by the content.
-const ORIENTATION_EXTENSIONS: [&str; 13] = [
-    "txt", "p", "json", "geojson", "xml", "out", "nvm", "camera", "bin", "xyz", "prj", "ori", "zip",
+/// Extensions of orientation files and of what is known beforehand; the readers go by the content.
+const OTHER_EXTENSIONS: [&str; 21] = [
+    "txt", "p", "json", "geojson", "xml", "out", "nvm", "camera", "bin", "xyz", "prj", "ori",
+    "zip", "las", "laz", "asc", "geojsonl", "geojsons", "jsonl", "ndjson", "ldjson",
 ];
 
-/// Largest orientation file that is read, bytes: COLMAP writes some hundred bytes for every tie
-/// point.
-const MAX_ORIENTATION_BYTES: u64 = 1 << 30;
+/// Largest file beside the photographs that is read, bytes: COLMAP writes some hundred bytes for
+/// every tie point.
+const MAX_OTHER_BYTES: u64 = 1 << 30;
 
 /// Most links that one notice names; the others are counted.
 const MOST_NAMED: usize = 5;
@@ -36,6 +38,8 @@ pub(super) struct FolderContents {
     broken: Vec<String>,
     cycles: Vec<String>,
     duplicates: Vec<String>,
+    /// Reference systems of files that no reader takes, each with its file.
+    of_unread: Vec<String>,
 }
 
 impl FolderContents {
@@ -45,6 +49,10 @@ impl FolderContents {
             (&self.broken, "links that lead nowhere, left out"),
             (&self.cycles, "links to folders around them, not followed"),
             (&self.duplicates, "links to what is read already, left out"),
+            (
+                &self.of_unread,
+                "reference systems of files that are not read, left out",
+            ),
         ];
         let sentence = |(links, what): (&Vec<String>, &str)| {
             let named = links[..links.len().min(MOST_NAMED)].join(", ");
@@ -95,6 +103,7 @@ pub(super) fn walk(folder: &Path, results: &Path) -> Result<(SceneFiles, FolderC
     while let Some(link) = walk.links.pop_front() {
         walk.follow(&link)?;
     }
+    walk.leave_out_systems_of_unread();
     Ok((walk.files, walk.seen))
 }
 
@@ -119,6 +128,8 @@ struct FolderWalk {
     /// Folders and files that were reached, as paths without links.
     reached: HashSet<PathBuf>,
     links: VecDeque<PendingLink>,
+    /// Paths of the files that no reader takes.
+    unread: Vec<String>,
     files: SceneFiles,
     seen: FolderContents,
 }
@@ -210,7 +221,38 @@ impl FolderWalk {
             return self.add(path, relative);
         }
         *self.seen.unread.entry(kind_of(relative)).or_default() += 1;
+        self.unread.push(relative.to_owned());
         Ok(())
+    }
+
+    /// A `.prj` belongs to the file of its name, though that is none that is read (a shapefile).
+    fn leave_out_systems_of_unread(&mut self) {
+        let bare = |path: &str| {
+            path.rsplit_once('.')
+                .map_or(path, |(bare, _)| bare)
+                .to_owned()
+        };
+        let mut read: BTreeMap<String, usize> = BTreeMap::new();
+        for file in &self.files.files {
+            *read.entry(bare(&file.path)).or_default() += 1;
+        }
+        let unread: BTreeMap<String, &String> = self
+            .unread
+            .iter()
+            .rev()
+            .map(|path| (bare(path), path))
+            .collect();
+        let of_unread = &mut self.seen.of_unread;
+        self.files.files.retain(|file| {
+            let name = bare(&file.path);
+            let of = unread.get(&name).filter(|_| read[&name] == 1);
+            let is_system = || detect(file) == FileKind::ReferenceSystem;
+            let of = of.filter(|_| {
+                extension(Path::new(&file.path)).as_deref() == Some("prj") && is_system()
+            });
+            of_unread.extend(of.map(|of| format!("{} of {of}", file.path)));
+            of.is_none()
+        });
     }
 
     /// Adds a file, or those of an archive.
@@ -237,14 +279,13 @@ fn extension(path: &Path) -> Option<String> {
     path.extension().map(|e| e.to_string_lossy().to_lowercase())
 }
 
-/// By extension and size: a folder may hold point clouds and other large files.
+/// By extension and size: a folder may hold clouds of whole flights and other large files.
 fn is_wanted(path: &Path) -> bool {
     let Some(extension) = extension(path) else {
         return false;
     };
-    let small = || fs::metadata(path).is_ok_and(|m| m.len() <= MAX_ORIENTATION_BYTES);
-    IMAGE_EXTENSIONS.contains(&&*extension)
-        || (ORIENTATION_EXTENSIONS.contains(&&*extension) && small())
+    let small = || fs::metadata(path).is_ok_and(|m| m.len() <= MAX_OTHER_BYTES);
+    IMAGE_EXTENSIONS.contains(&&*extension) || (OTHER_EXTENSIONS.contains(&&*extension) && small())
 }
 
 /// The usual name of a kind of file.
@@ -378,6 +419,47 @@ mod tests {
         let broken = "links that lead nowhere, left out: \
                       gone.jpg -> ../data/gone.jpg, that -> this, this -> that";
         assert_eq!(seen.notices(), [broken]);
+    }
+
+    #[test]
+    fn clouds_and_grids_are_read_and_systems_of_unread_files_are_not() {
+        let top = planted(
+            &[
+                "scene/a.laz",
+                "scene/b.LAS",
+                "scene/c.asc",
+                "scene/d.geojsonl",
+                "scene/e.city.jsonl",
+                "scene/houses.shp",
+                "scene/flight.docx",
+            ],
+            &[],
+        );
+        let wkt = "PROJCS[\"x\",AUTHORITY[\"EPSG\",\"31467\"]]";
+        for name in ["houses", "c", "site"] {
+            fs::write(top.path().join(format!("scene/{name}.prj")), wkt).unwrap();
+        }
+        // INPHO's projects have the same extension.
+        fs::write(top.path().join("scene/flight.prj"), "$PROJECT 6\n").unwrap();
+        let (files, seen) = walked(&top);
+        let names: Vec<&str> = files
+            .iter()
+            .map(|f| f.split(" = ").next().unwrap())
+            .collect();
+        let expected = [
+            "a.laz",
+            "b.LAS",
+            "c.asc",
+            "c.prj",
+            "d.geojsonl",
+            "e.city.jsonl",
+            "flight.prj",
+            "site.prj",
+        ];
+        assert_eq!(names, expected);
+        let said =
+            "reference systems of files that are not read, left out: houses.prj of houses.shp";
+        assert_eq!(seen.notices(), [said]);
     }
 
     #[test]

@@ -145,7 +145,7 @@ fn files_of_other_programs_hold_the_planted_ground_and_house() {
         ("ground_3.laz", 0.05),
         ("ground_7.laz", 0.05),
     ] {
-        let terrain = Terrain::read(&file(name), &system, origin, 0.3).unwrap();
+        let terrain = Terrain::read(&file(name), None, &system, origin, 0.3).unwrap();
         for (x, y) in [(0.0, 0.0), (-38.2, 27.0), (31.7, -28.1)] {
             let miss = terrain.z_at(x, y).unwrap() - (12.0 + 0.25 * x - 0.1 * y);
             assert!(miss.abs() < within_m, "{name}: {miss} m at {x}, {y}");

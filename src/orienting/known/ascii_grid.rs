@@ -6,18 +6,24 @@
 //! cellsize 1           or dx, dy              NODATA_value -9999   (may be missing)
 //! 147.1 147.2 ...
 //! ```
+//!
+//! Of numbers "1,5" is one where no number of the file has a point.
 
 use std::iter::Peekable;
 
-use super::height_grid::HeightGrid;
+use super::height_grid::{HeightGrid, Placement, StoredHeights};
 use super::refusal::refusal;
+use super::system::Way;
 use crate::base::error::{Error, Result};
 use crate::orienting::orientation::InputFile;
 
 /// Does a file begin as such a grid does?
 pub(super) fn is_ascii_grid(file: &InputFile) -> bool {
     let head = file.start_as_text(64);
-    head.is_some_and(|text| text.trim_start().to_ascii_lowercase().starts_with("ncols"))
+    let text = head.unwrap_or_default();
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    text.get(..5)
+        .is_some_and(|word| word.eq_ignore_ascii_case("ncols"))
 }
 
 /// What the header states.
@@ -52,8 +58,13 @@ impl Header {
     }
 }
 
-pub(super) fn read(file: &InputFile) -> Result<HeightGrid> {
+pub(super) fn read(file: &InputFile, way: Way) -> Result<HeightGrid> {
     let text = file.text();
+    let text = text.trim_start_matches('\u{feff}');
+    let text = match text.contains(',') && !text.contains('.') {
+        true => text.replace(',', "."),
+        false => text.to_owned(),
+    };
     let mut lines = text.lines().enumerate().peekable();
     let header = read_header(file, &mut lines)?;
     let missing = |name: &str| {
@@ -87,8 +98,18 @@ pub(super) fn read(file: &InputFile) -> Result<HeightGrid> {
     ];
     // Heights are read as they are written: the value that stands for none as well.
     let no_data = header.no_data.unwrap_or(-9999.0) as f32;
-    HeightGrid::new(first, cell, [columns, rows], heights, Some(no_data))
-        .map_err(|problem| refusal(&file.path, &problem, "give heights of the ground"))
+    let place = Placement {
+        first,
+        cell,
+        columns,
+        rows,
+    };
+    HeightGrid::new(
+        place,
+        StoredHeights::as_they_are(heights, Some(no_data)),
+        way,
+    )
+    .map_err(|problem| refusal(&file.path, &problem, "give heights of the ground"))
 }
 
 fn refuse(file: &InputFile, line: usize, problem: String, expected: &str) -> Error {

@@ -1,5 +1,6 @@
 //! Footprints of CityJSON 1 and 2: the ground surfaces of each building, or where it has none, the
-//! surface that lies lowest.
+//! surface that lies lowest. A building whose parts have outlines of their own (3DBAG) is drawn by
+//! those.
 
 use serde_json::Value;
 
@@ -13,7 +14,7 @@ pub(super) fn read(file: &InputFile, json: &Value, system: &WorldSystem) -> Resu
     let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
     let stated = match &json["metadata"]["referenceSystem"] {
         Value::String(name) => StatedSystem::named(name),
-        _ => StatedSystem::Unstated,
+        _ => StatedSystem::unstated(),
     };
     let way = system.way_from(&stated).map_err(|problem| {
         refuse(
@@ -30,7 +31,9 @@ pub(super) fn read(file: &InputFile, json: &Value, system: &WorldSystem) -> Resu
         let is_building = object["type"]
             .as_str()
             .is_some_and(|t| t.starts_with("Building"));
-        let geometries = object["geometry"].as_array().filter(|_| is_building);
+        let is_drawn_by_parts = parts_with_geometry(objects, object);
+        let geometries = object["geometry"].as_array();
+        let geometries = geometries.filter(|_| is_building && !is_drawn_by_parts);
         // The last one is the most detailed.
         let Some(geometry) = geometries.and_then(|all| all.last()) else {
             continue;
@@ -62,6 +65,19 @@ pub(super) fn read(file: &InputFile, json: &Value, system: &WorldSystem) -> Resu
         }
     }
     Ok(outlines)
+}
+
+/// Has a building parts that hold geometry?
+fn parts_with_geometry(objects: &serde_json::Map<String, Value>, object: &Value) -> bool {
+    let children = object["children"].as_array().into_iter().flatten();
+    let mut parts = children.filter_map(|name| objects.get(name.as_str()?));
+    parts.any(|part| {
+        let is_part = part["type"].as_str() == Some("BuildingPart");
+        is_part
+            && part["geometry"]
+                .as_array()
+                .is_some_and(|all| !all.is_empty())
+    })
 }
 
 fn plan(way: &Way, p: &[f64; 3]) -> Option<[f64; 2]> {

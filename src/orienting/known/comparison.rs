@@ -73,6 +73,10 @@ impl KnownShift {
     }
 }
 
+/// No datums of heights are further apart, metres: the geoid lies between 107 below and 86 above
+/// the ellipsoid, and datums of charts and old levels some metres beside it.
+pub const MOST_DATUM_M: f64 = 200.0;
+
 /// What belongs here with less probability is contradicted.
 const DOUBTFUL: f64 = 0.5;
 
@@ -127,10 +131,16 @@ impl KnownComparison {
                 };
                 format!(
                     "{file} was moved by {} to what the images show{datum}",
-                    self.shift_words()
+                    self.shift_words(self.moved_m().into())
                 )
             }
             KnownVerdict::Contradicted => match thing {
+                Terrain if self.is_far_off() => format!(
+                    "the ground that the images show lies {} from {file}, and no datums of heights \
+                     are as far apart, so it was not used: check its place and the unit of its \
+                     heights",
+                    self.shift_words(self.shift_m.unwrap_or_default())
+                ),
                 Terrain => format!(
                     "{file} follows the roofs, so it is a surface model and was not used: give a \
                      terrain model"
@@ -151,9 +161,13 @@ impl KnownComparison {
         })
     }
 
+    /// Does the shift of heights exceed that between any two datums?
+    fn is_far_off(&self) -> bool {
+        self.shift_m.is_some_and(|[.., up]| up.abs() > MOST_DATUM_M)
+    }
+
     /// "1.20 m west, 0.90 m north": what is more than a centimetre.
-    fn shift_words(&self) -> String {
-        let [east, north, up] = self.moved_m().into();
+    fn shift_words(&self, [east, north, up]: [f64; 3]) -> String {
         let parts = [
             (east, ["east", "west"]),
             (north, ["north", "south"]),

@@ -1,6 +1,7 @@
 //! Footprints of GeoJSON (RFC 7946): longitude and latitude on WGS84, unless the member `crs` of
 //! GeoJSON 2008 names another system. `"crs": null`, which that version has for coordinates of no
-//! known system, stands for the frame of the orientation.
+//! known system, stands for the frame of the orientation, and so do coordinates that are no
+//! longitude and latitude, as many programs write them without a word.
 
 use serde_json::Value;
 
@@ -10,28 +11,36 @@ use super::system::{StatedSystem, Way, WorldSystem};
 use crate::base::error::Result;
 use crate::orienting::orientation::InputFile;
 
-pub(super) fn read(file: &InputFile, json: &Value, system: &WorldSystem) -> Result<Vec<Outline>> {
+/// Reads footprints; what was assumed of them goes to `warnings`.
+pub(super) fn read(
+    file: &InputFile,
+    json: &Value,
+    system: &WorldSystem,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Outline>> {
     let refuse = |problem: &str| {
         let advice = "state the system of the orientation (--crs), or convert the file to it with \
                       ogr2ogr and name it in its crs member";
         refusal(&file.path, problem, advice)
     };
-    let stated = match json.get("crs") {
-        None => StatedSystem::LongitudeLatitude,
-        Some(Value::Null) => StatedSystem::Unstated,
-        Some(crs) => match crs["properties"]["name"].as_str() {
-            Some(name) => StatedSystem::named(name),
-            None => return Err(refuse("its member crs names no system")),
-        },
-    };
-    let way = system
-        .way_from(&stated)
-        .map_err(|problem| refuse(&problem))?;
     let one = std::slice::from_ref(json);
     let features = match json["type"].as_str() {
         Some("FeatureCollection") => json["features"].as_array().map_or(&[][..], Vec::as_slice),
         _ => one,
     };
+    let stated = match json.get("crs") {
+        None if has_lengths(features) => {
+            let said = "states no system, and its coordinates are no longitude and latitude: they \
+                        are taken for those of the orientation";
+            warnings.push(format!("{} {said}", file.path));
+            StatedSystem::unstated()
+        }
+        None => StatedSystem::longitude_latitude(),
+        Some(Value::Null) => StatedSystem::unstated(),
+        Some(crs) => stated_of(crs).ok_or_else(|| refuse("its member crs names no system"))?,
+    };
+    let way = system.way_from(&stated);
+    let way = way.map_err(|problem| refuse(&problem))?;
     let mut outlines = Vec::new();
     for (i, feature) in features.iter().enumerate() {
         let geometry = match feature["type"].as_str() {
@@ -61,6 +70,34 @@ pub(super) fn read(file: &InputFile, json: &Value, system: &WorldSystem) -> Resu
         }
     }
     Ok(outlines)
+}
+
+/// The system of GeoJSON 2008's member, or of the form before that (`"type": "EPSG"`).
+fn stated_of(crs: &Value) -> Option<StatedSystem> {
+    let properties = &crs["properties"];
+    match (
+        crs.as_str().or(properties["name"].as_str()),
+        &properties["code"],
+    ) {
+        (Some(name), _) => Some(StatedSystem::named(name)),
+        (None, Value::Number(code)) => Some(StatedSystem::named(&code.to_string())),
+        (None, Value::String(code)) => Some(StatedSystem::named(code)),
+        _ => None,
+    }
+}
+
+/// Is the first position of any polygon further from zero than degrees go?
+fn has_lengths(features: &[Value]) -> bool {
+    let first = |feature: &Value| {
+        let geometry = feature.get("geometry").unwrap_or(feature);
+        let mut inner = &geometry["coordinates"];
+        while inner[0].is_array() {
+            inner = &inner[0];
+        }
+        Some([inner.get(0)?.as_f64()?, inner.get(1)?.as_f64()?])
+    };
+    let mut positions = features.iter().filter_map(first);
+    positions.any(|[x, y]| x.abs() > 360.0 || y.abs() > 90.0)
 }
 
 /// The identifier of a feature, or its number from 1.

@@ -1,17 +1,23 @@
-//! GeoTIFF of heights (OGC 19-008): one band of numbers, its place in the tags.
+//! GeoTIFF of heights (OGC 19-008): one band of numbers, its place in the tags, and what GDAL
+//! writes of the band: unit, scale and offset.
 
 use super::geo_keys;
-use super::height_grid::HeightGrid;
+use super::height_grid::{HeightGrid, Placement, StoredHeights};
 use super::refusal::refusal;
-use super::system::WorldSystem;
+use super::system::{StatedPlan, StatedSystem, WorldSystem};
 use crate::base::error::Result;
-use crate::orienting::orientation::InputFile;
+use crate::orienting::orientation::{InputFile, LinearUnit};
 use crate::photographs::raster::{Directory, NumberRaster, tiff_tags as tags};
 
 /// The key by which coordinates are of the corner or of the centre of a cell.
 const RASTER_TYPE: u64 = 1025;
 
-pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid> {
+/// Reads a GeoTIFF; `beside` is the system that a file of its name states.
+pub(super) fn read(
+    file: &InputFile,
+    system: &WorldSystem,
+    beside: Option<StatedSystem>,
+) -> Result<HeightGrid> {
     let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
     let place = "give a GeoTIFF, whose tags state where it lies, north up";
     // What has a place and heights is never held by its head.
@@ -24,9 +30,16 @@ pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid>
     let keys = keys.unwrap_or_default();
     let key = |key: u64| geo_keys::value(&keys, key);
     let stated = geo_keys::stated(key).map_err(|problem| refuse(&problem, reproject))?;
-    system
-        .is_frame_of(&stated)
-        .map_err(|problem| refuse(&problem, reproject))?;
+    let mut stated = match beside {
+        Some(beside) if stated.plan == StatedPlan::Unstated => beside,
+        _ => stated,
+    };
+    let band = Band::of(&raster.directory).map_err(|problem| refuse(&problem, reproject))?;
+    if let Some(unit) = band.unit {
+        stated.height_unit_m = unit.metres;
+    }
+    let way = system.way_from(&stated);
+    let way = way.map_err(|problem| refuse(&problem, reproject))?;
     let (corner, cell) = placed(&raster.directory).map_err(|problem| refuse(problem, place))?;
     // Coordinates are of the corner of a cell, unless the file says that they are of its centre.
     let half = if key(RASTER_TYPE) == Some(2) {
@@ -34,13 +47,66 @@ pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid>
     } else {
         0.5
     };
-    let first = [corner[0] + half * cell[0], corner[1] - half * cell[1]];
     let no_data = raster.directory.raw(tags::GDAL_NO_DATA);
     let no_data = no_data.and_then(|text| std::str::from_utf8(text).ok());
     let no_data = no_data.and_then(|text| text.trim_matches(['\0', ' ']).parse::<f64>().ok());
-    let size = [raster.width, raster.height];
-    HeightGrid::new(first, cell, size, raster.values, no_data.map(|z| z as f32))
+    let cells = Placement {
+        first: [corner[0] + half * cell[0], corner[1] - half * cell[1]],
+        cell,
+        columns: raster.width,
+        rows: raster.height,
+    };
+    let heights = StoredHeights {
+        values: raster.values,
+        no_data: no_data.map(|z| z as f32),
+        scale: band.scale,
+    };
+    HeightGrid::new(cells, heights, way)
         .map_err(|problem| refuse(&problem, "give heights of the ground, in metres"))
+}
+
+/// What GDAL writes of the first band.
+struct Band {
+    unit: Option<LinearUnit>,
+    /// Factor and summand of its values.
+    scale: [f64; 2],
+}
+
+impl Band {
+    /// Otherwise why its heights are not known.
+    fn of(directory: &Directory) -> std::result::Result<Self, String> {
+        let text = directory.raw(tags::GDAL_METADATA).unwrap_or_default();
+        let text = String::from_utf8_lossy(text);
+        let document = roxmltree::Document::parse(text.trim_matches(['\0', ' ', '\n']));
+        let item = |role: &str| {
+            let nodes = document.as_ref().ok()?.descendants();
+            let of_first =
+                |node: &roxmltree::Node| node.attribute("sample").is_none_or(|s| s == "0");
+            let mut named = nodes.filter(|node| node.attribute("role") == Some(role));
+            named
+                .find(of_first)?
+                .text()
+                .map(|text| text.trim().to_owned())
+        };
+        let unit = match item("unittype").filter(|name| !name.is_empty()) {
+            None => None,
+            Some(name) => Some(LinearUnit::of_name(&name).ok_or_else(|| {
+                format!("its heights are not in metres, but in the unit {name}, which is not read")
+            })?),
+        };
+        let number = |role: &str, otherwise: f64| match item(role) {
+            None => Ok(otherwise),
+            Some(text) => text
+                .parse::<f64>()
+                .ok()
+                .filter(|v| v.is_finite())
+                .ok_or_else(|| format!("the {role} of its heights is {text}, which is no number")),
+        };
+        Ok(Self {
+            unit,
+            scale: [number("scale", 1.0)?, number("offset", 0.0)?],
+        })
+    }
 }
 
 /// Easting and northing of pixel (0, 0) and the size of a cell; else why there is none.

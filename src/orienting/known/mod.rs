@@ -4,9 +4,11 @@
 //! ```text
 //! system        the coordinate system that a file states, and the way from it to the scene's
 //! height_grid   heights on a grid, interpolated
+//!    holes      cells that hold no ground, though no tag says so
 //!    ascii_grid, geotiff, point_cloud   its readers; point_cloud reads the points of roofs too
 //!    geo_keys   the system by the keys of GeoTIFF and LAS
 //! footprint     outlines in plan: inside or outside, and how far from the border
+//!    json_lines            JSON as one value or as one a line
 //!    geojson, city_json    its readers
 //! comparison    what the images say of one of them
 //! ```
@@ -26,24 +28,27 @@ mod geo_keys;
 mod geojson;
 mod geotiff;
 mod height_grid;
+mod holes;
+mod json_lines;
 mod point_cloud;
 mod refusal;
 mod system;
 #[cfg(test)]
 mod tests;
 
-pub use comparison::{KnownComparison, KnownShift, KnownThing, KnownVerdict};
+pub use comparison::{KnownComparison, KnownShift, KnownThing, KnownVerdict, MOST_DATUM_M};
 pub(crate) use comparison::{belongs_here, best_shift};
 pub use footprint::Footprint;
 pub use height_grid::HeightGrid;
+use system::StatedSystem;
 pub use system::WorldSystem;
 
 use std::sync::Arc;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 
 use self::refusal::refusal;
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::orienting::orientation::{InputFile, POINT_CLOUD};
 
 /// What is known of a scene; frame and units of the scene.
@@ -78,6 +83,8 @@ pub struct Terrain {
     grid: Arc<HeightGrid>,
     /// Origin of the scene.
     origin: Vector3<f64>,
+    /// Is it known what the heights of the scene count from?
+    is_placed: bool,
     /// Standard deviation of its heights, metres.
     pub accuracy_m: f64,
 }
@@ -134,22 +141,33 @@ impl PointCloud {
 }
 
 impl Terrain {
-    /// Reads a terrain model for a scene with this system and origin.
+    /// Reads a terrain model for a scene with this system and origin; `beside` is the text of its
+    /// `.prj`, where it has one.
     ///
     /// # Errors
     /// A refusal that names the file.
     pub fn read(
         file: &InputFile,
+        beside: Option<&str>,
         system: &WorldSystem,
         origin: Vector3<f64>,
         accuracy_m: f64,
     ) -> Result<Self> {
+        let beside = beside.map(StatedSystem::named);
         let grid = if crate::photographs::raster::is_tiff(&file.bytes) {
-            geotiff::read(file, system)?
+            geotiff::read(file, system, beside)?
         } else if file.bytes.starts_with(POINT_CLOUD) {
             point_cloud::read(file, system)?
         } else if ascii_grid::is_ascii_grid(file) {
-            ascii_grid::read(file)?
+            let stated = beside.unwrap_or_else(StatedSystem::unstated);
+            let way = system.way_from(&stated).map_err(|problem| {
+                refusal(
+                    &file.path,
+                    &problem,
+                    "convert it to the system of the orientation",
+                )
+            })?;
+            ascii_grid::read(file, way)?
         } else {
             return Err(refusal(
                 &file.path,
@@ -162,8 +180,27 @@ impl Terrain {
             file: file.path.clone(),
             grid: Arc::new(grid),
             origin,
+            is_placed: system.is_known(),
             accuracy_m,
         })
+    }
+
+    /// What is to be said of its holes.
+    pub fn notice(&self) -> Option<String> {
+        let [holes, known] = self.grid.holes();
+        (holes > 0).then(|| {
+            format!(
+                "{}: {holes} of {} heights are no ground (fillers as 0, spikes and pits), and count \
+                 as none",
+                self.file,
+                holes + known
+            )
+        })
+    }
+
+    /// Is it known what the heights of the scene count from? Then no datum explains a large shift.
+    pub fn is_placed(&self) -> bool {
+        self.is_placed
     }
 
     /// Height of the ground at a plan position, local frame, metres; `None` where the model has
@@ -195,26 +232,17 @@ impl Register {
                  becomes GeoJSON with ogr2ogr",
             )
         };
-        let text = file.start_as_text(1024).ok_or_else(none)?;
-        if !text
-            .trim_start_matches('\u{feff}')
-            .trim_start()
-            .starts_with('{')
+        if !file
+            .start_as_text(1024)
+            .is_some_and(|text| json_lines::begins(&text))
         {
             return Err(none());
         }
-        let text = file.text();
-        let json: serde_json::Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
-            .map_err(|e| Error::Line {
-                file: file.path.clone(),
-                line: e.line(),
-                problem: "it is no JSON".to_owned(),
-                expected: "GeoJSON or CityJSON".to_owned(),
-            })?;
+        let json = json_lines::read(file)?;
         let outlines = match json["type"].as_str() {
             Some("CityJSON") => city_json::read(file, &json, system)?,
             Some("FeatureCollection" | "Feature" | "Polygon" | "MultiPolygon") => {
-                geojson::read(file, &json, system)?
+                geojson::read(file, &json, system, warnings)?
             }
             _ => return Err(none()),
         };
@@ -239,5 +267,53 @@ impl Register {
             footprints,
             accuracy_m,
         })
+    }
+
+    /// Does any outline reach into a box in plan, x0, y0, x1, y1, local frame?
+    pub fn reaches(&self, [x0, y0, x1, y1]: [f64; 4]) -> bool {
+        self.footprints.iter().any(|footprint| {
+            let [low, high] = footprint.bounds();
+            low.x <= x1 && high.x >= x0 && low.y <= y1 && high.y >= y0
+        })
+    }
+
+    /// Without the outlines of survey areas: most of the places that three views show, `shown`, lie
+    /// inside of one, and it is larger than all of them, `shown_m2`, so that nothing around it is
+    /// shown.
+    ///
+    /// # Errors
+    /// A refusal where no other outline is left.
+    pub fn without_areas(
+        mut self,
+        shown: &[Point2<f64>],
+        shown_m2: f64,
+        warnings: &mut Vec<String>,
+    ) -> Result<Self> {
+        let holds_most = |footprint: &Footprint| {
+            let inside = shown
+                .iter()
+                .filter(|place| footprint.outline.contains(place));
+            footprint.outline.signed_area() > shown_m2 && 2 * inside.count() > shown.len()
+        };
+        let (areas, footprints): (Vec<Footprint>, _) =
+            self.footprints.into_iter().partition(holds_most);
+        let problem = |area: &Footprint| {
+            format!(
+                "its polygon {} of {:.0} m2 holds most of what the photographs show: it is the \
+                 outline of a survey area, not of a building",
+                area.name,
+                area.outline.signed_area()
+            )
+        };
+        if let (Some(area), true) = (areas.first(), footprints.is_empty()) {
+            let advice = "give footprints of buildings";
+            return Err(refusal(&self.file, &problem(area), advice));
+        }
+        let said = areas
+            .iter()
+            .map(|area| format!("{}: {}", self.file, problem(area)));
+        warnings.extend(said.map(|said| format!("{said}; it is left out")));
+        self.footprints = footprints;
+        Ok(self)
     }
 }

@@ -1,5 +1,7 @@
 //! Planted grids and footprints, through all readers; and what is refused.
 
+mod forms;
+
 use nalgebra::{Point2, Vector3};
 
 use super::*;
@@ -42,7 +44,7 @@ fn ascii(header: &str) -> InputFile {
 const CORNER: &str = "ncols 20\nnrows 15\nxllcorner 432080\nyllcorner 5412285\ncellsize 2";
 
 fn terrain(file: &InputFile, system: &WorldSystem) -> Result<Terrain> {
-    Terrain::read(file, system, Vector3::from(ORIGIN), 0.3)
+    Terrain::read(file, None, system, Vector3::from(ORIGIN), 0.3)
 }
 
 fn check_planted(terrain: &Terrain) {
@@ -259,7 +261,7 @@ fn terrain_that_cannot_be_used_is_refused_by_name() {
         "no number",
     );
     refused(
-        &ascii("ncols 20\nnrows 15\nxllcorner 1\nyllcorner 1\ncellsize 2,5"),
+        &ascii("ncols 20\nnrows 15\nxllcorner 1.5\nyllcorner 1\ncellsize 2,5"),
         "line 5",
     );
     let all_nan = CORNER.to_owned() + "\n" + &"nan ".repeat(300);
@@ -279,8 +281,8 @@ fn terrain_that_cannot_be_used_is_refused_by_name() {
         PlantedTiff::strip(place.chain([geo_keys(keys)]).collect()).file()
     };
     refused(&with(&[[3072, 2056]]), "EPSG:2056");
-    refused(&with(&[[1024, 2], [2048, 4326]]), "longitude and latitude");
-    refused(&with(&[[3072, 25832], [4099, 9003]]), "not in metres");
+    refused(&with(&[[1024, 2], [2048, 4314]]), "EPSG:4314");
+    refused(&with(&[[3072, 25832], [4099, 9014]]), "not in metres");
     refused(
         &InputFile::new("a.las", b"LASF....".to_vec()),
         "ends within its header",
@@ -409,12 +411,12 @@ fn footprints_that_cannot_be_used_are_refused_by_name() {
         );
     };
     let metres = planted_polygon(|p| p);
+    let degrees = planted_polygon(|[x, y]| [x / 1e5, y / 1e5]);
     refused(
-        &feature("Polygon", &metres, ""),
+        &feature("Polygon", &degrees, ""),
         &UNKNOWN,
         "longitude and latitude",
     );
-    refused(&feature("Polygon", &metres, ""), &UTM, "no places");
     refused(
         &feature("Polygon", &metres, &CRS.replace("25832", "2056")),
         &UTM,

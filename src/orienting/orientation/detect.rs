@@ -164,8 +164,9 @@ pub fn detect(file: &InputFile) -> FileKind {
         return FileKind::Ignored;
     }
     if let Some(text) = file.start_as_text(HEAD_BYTES) {
+        // Lines of GeoJSON may each have a record separator before them (RFC 8142).
         if text
-            .trim_start_matches('\u{feff}')
+            .trim_start_matches(['\u{feff}', '\u{1e}'])
             .trim_start()
             .starts_with(['{', '['])
         {
@@ -325,6 +326,9 @@ fn by_keys(text: &str) -> FileKind {
         FileKind::OpenSfmCameras
     } else if has(&["frames", "transform_matrix"]) {
         FileKind::Nerfstudio
+    } else if has(&["is_metric", "anchor", "rays_a_point", "left_out"]) {
+        // What `orient` writes beside its model.
+        FileKind::ReferenceSystem
     } else if has(&["views", "K", "R", "C"]) {
         FileKind::Krc
     } else if has(&["CityJSON", "CityObjects"])

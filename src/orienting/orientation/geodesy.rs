@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::base::math;
 
 /// Semi-major axis of WGS84 and of GRS80, metres.
-pub(super) const A_M: f64 = 6_378_137.0;
+pub(crate) const A_M: f64 = 6_378_137.0;
 
 /// Square of its first eccentricity.
 const E2: f64 = 6.694_379_990_141_316e-3;

@@ -3,8 +3,8 @@
 //!
 //! * Geocentric coordinates (Metashape's chunks, many GNSS solutions) are recognised by their
 //!   distance from the centre of the Earth; near the equator by cameras that look towards it.
-//! * Longitude, latitude and height in lists: positions that differ by less than a degree, at
-//!   flying heights.
+//! * Longitude, latitude and height: where a system of them is stated, at any height; else
+//!   positions that differ by less than a degree, at flying heights.
 //!
 //! The frame is the tangent plane (WGS84) at the mean position, rounded to 0.001 degrees. Within a
 //! kilometre of the anchor the ellipsoid falls 8 cm below it. Rotations of geographic lists are
@@ -27,9 +27,9 @@ enum CoordinateKind {
 }
 
 /// Turns geocentric or geographic positions into a local metric frame; `None` where they are metric
-/// already.
-pub fn to_metric_frame(orientations: &mut [Orientation]) -> Option<Anchor> {
-    let kind = coordinate_kind(orientations)?;
+/// already. `is_geographic`: longitude and latitude are stated, not guessed.
+pub fn to_metric_frame(orientations: &mut [Orientation], is_geographic: bool) -> Option<Anchor> {
+    let kind = coordinate_kind(orientations, is_geographic)?;
     let geocentric = |c: &Point3<f64>| match kind {
         CoordinateKind::Geocentric => *c,
         CoordinateKind::LonLat => geocentric_of(c.x, c.y, c.z),
@@ -55,7 +55,7 @@ pub fn to_metric_frame(orientations: &mut [Orientation]) -> Option<Anchor> {
     Some(anchor)
 }
 
-fn coordinate_kind(orientations: &[Orientation]) -> Option<CoordinateKind> {
+fn coordinate_kind(orientations: &[Orientation], is_stated: bool) -> Option<CoordinateKind> {
     let centers = || orientations.iter().map(|o| &o.center);
     // Map coordinates can be that large too (northings at 57 degrees, oblique views to the south),
     // but not 20 km high.
@@ -68,8 +68,10 @@ fn coordinate_kind(orientations: &[Orientation]) -> Option<CoordinateKind> {
         None
     } else if centers().all(at_surface) && orientations.iter().all(is_no_map) {
         Some(CoordinateKind::Geocentric)
-    } else if centers().all(is_geographic)
-        && (0..2).all(|i| is_small_spread(centers().map(move |c| c[i])))
+    } else if centers().all(are_degrees)
+        && (is_stated
+            || centers().all(is_flying)
+                && (0..2).all(|i| is_small_spread(centers().map(move |c| c[i]))))
     {
         // Beyond 90 degrees only longitudes reach; else x is the longitude, as in X Y Z.
         Some(if centers().any(|c| c.y.abs() > 90.0) {
@@ -82,12 +84,13 @@ fn coordinate_kind(orientations: &[Orientation]) -> Option<CoordinateKind> {
     }
 }
 
-/// Are these degrees, and a plausible flying height in metres?
-fn is_geographic(c: &Point3<f64>) -> bool {
-    c.x.abs() <= 180.0
-        && c.y.abs() <= 180.0
-        && c.x.abs().min(c.y.abs()) <= 90.0
-        && (20.0..20_000.0).contains(&c.z)
+fn are_degrees(c: &Point3<f64>) -> bool {
+    c.x.abs() <= 180.0 && c.y.abs() <= 180.0 && c.x.abs().min(c.y.abs()) <= 90.0
+}
+
+/// Is this a plausible flying height in metres?
+fn is_flying(c: &Point3<f64>) -> bool {
+    (20.0..20_000.0).contains(&c.z)
 }
 
 /// No flight has baselines of centimetres: coordinates that differ so little are degrees.
@@ -146,7 +149,7 @@ mod tests {
             CoordinateKind::LatLon,
         ] {
             let (mut orientations, anchor) = abroad(kind);
-            assert_eq!(to_metric_frame(&mut orientations), Some(anchor));
+            assert_eq!(to_metric_frame(&mut orientations, false), Some(anchor));
             for (o, view) in orientations.iter().zip(&scene.views) {
                 let camera = Camera {
                     r: o.r,
@@ -175,11 +178,30 @@ mod tests {
     }
 
     #[test]
+    fn stated_degrees_are_places_at_any_height() {
+        for lower_m in [0.0, 95.0, 400.0, 1100.0] {
+            let (mut high, anchor) = abroad(CoordinateKind::LonLat);
+            let mut low = high.clone();
+            low.iter_mut().for_each(|o| o.center.z -= lower_m);
+            assert_eq!(to_metric_frame(&mut low, true), Some(anchor));
+            to_metric_frame(&mut high, true);
+            for (low, high) in low.iter().zip(&high) {
+                let off = high.center - low.center - Vector3::z() * lower_m;
+                // Verticals 600 m apart converge by a ten-thousandth.
+                assert!(off.norm() < 1e-3 + 1e-4 * lower_m, "{off}");
+            }
+        }
+        let (mut metres, _) = abroad(CoordinateKind::LonLat);
+        metres.iter_mut().for_each(|o| o.center.x += 432_000.0);
+        assert_eq!(to_metric_frame(&mut metres, true), None);
+    }
+
+    #[test]
     fn oblique_and_level_views_are_places_on_the_earth_too() {
         let (mut orientations, anchor) = abroad(CoordinateKind::Geocentric);
         let tilt = rotation_from_axis_angle(&Vector3::new(1.4, 0.0, 0.0));
         orientations[0].r = tilt.matrix() * orientations[0].r;
-        assert_eq!(to_metric_frame(&mut orientations), Some(anchor));
+        assert_eq!(to_metric_frame(&mut orientations, false), Some(anchor));
     }
 
     #[test]
@@ -203,14 +225,14 @@ mod tests {
                 })
                 .collect();
             let before = orientations.clone();
-            assert_eq!(to_metric_frame(&mut orientations), None);
+            assert_eq!(to_metric_frame(&mut orientations, false), None);
             assert_eq!(orientations, before);
             // Nor when they look south, down by 40 degrees.
             let tilt = rotation_from_axis_angle(&Vector3::new(-50f64.to_radians(), 0.0, 0.0));
             orientations
                 .iter_mut()
                 .for_each(|o| o.r *= tilt.inverse().matrix());
-            assert_eq!(to_metric_frame(&mut orientations), None);
+            assert_eq!(to_metric_frame(&mut orientations, false), None);
         }
     }
 }

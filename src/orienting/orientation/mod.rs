@@ -14,6 +14,8 @@
 //! unread             formats that are known but not read, and what to do instead
 //! reference          EPSG code of the coordinate reference system
 //! units              what coordinates of a system count: metres, feet, degrees
+//! epsg               what the codes stand for
+//! well_known         systems that are written out
 //! sets               the files that together orient images, and their reader
 //! metric_frame       geocentric and geographic positions become a local metric frame
 //! ```
@@ -40,6 +42,7 @@
 
 mod angles;
 pub(crate) mod detect;
+mod epsg;
 mod format;
 mod formats;
 mod geodesy;
@@ -54,6 +57,7 @@ mod sets;
 mod transverse_mercator;
 mod units;
 mod unread;
+mod well_known;
 
 pub(crate) use angles::EXACT_ROTATION;
 pub use angles::{
@@ -62,9 +66,10 @@ pub use angles::{
 };
 pub use detect::{FileKind, detect};
 pub(crate) use detect::{GCP_LIST, GEO_LIST, POINT_CLOUD};
+pub(crate) use epsg::{is_geographic, plane_of};
 pub use format::Format;
 pub use geodesy::Anchor;
-pub(crate) use geodesy::geocentric_of;
+pub(crate) use geodesy::{A_M, geocentric_of};
 pub use image_orientation::{Crop, Orientation};
 pub use input_file::InputFile;
 pub(crate) use input_file::stem;

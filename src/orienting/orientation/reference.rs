@@ -1,6 +1,7 @@
 //! The coordinate reference system that files name, as its EPSG code.
 
 use super::geodesy::Anchor;
+use super::well_known;
 
 /// What the files of an orientation say about the system of their coordinates.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +16,34 @@ pub enum StatedReference {
     Local(String),
 }
 
+/// The report that `orient` writes beside its model: COLMAP's text has no room for a place.
+pub(super) const OF_ORIENT: &str = "orientation.json";
+
+/// What such a report says of the frame of the model.
+pub(super) fn of_orient(text: &str) -> StatedReference {
+    #[derive(serde::Deserialize)]
+    struct Report {
+        is_metric: bool,
+        anchor: Option<Anchor>,
+        epsg: Option<u32>,
+    }
+    match serde_json::from_str(text) {
+        Ok(Report {
+            is_metric: false, ..
+        }) => StatedReference::Local(format!(
+            "{OF_ORIENT} says that its scale is not that of the world"
+        )),
+        Ok(Report {
+            anchor: Some(anchor),
+            ..
+        }) => StatedReference::Place(anchor),
+        Ok(Report {
+            epsg: Some(code), ..
+        }) => StatedReference::System(code),
+        Ok(_) | Err(_) => StatedReference::None,
+    }
+}
+
 /// EPSG code of the system of an INPHO project.
 pub(crate) fn of_inpho(text: &str) -> StatedReference {
     let after = text.split("$COORDINATE_SYSTEM").nth(1);
@@ -23,68 +52,31 @@ pub(crate) fn of_inpho(text: &str) -> StatedReference {
         .map_or(StatedReference::None, StatedReference::System)
 }
 
-/// EPSG code of a system written as well-known text, as "EPSG:25832", or as the number alone.
+/// EPSG code of a system written as well-known text, as PROJ's string, as "EPSG:25832", in any of
+/// OGC's forms, or as the number alone.
 ///
 /// In well-known text only the code of the whole system counts: those of its ellipsoid, its units
-/// or its heights name something else. Of a compound system the horizontal part is taken.
+/// or its heights name something else. Of a compound system without a code the horizontal part is
+/// taken, and where no code is stated that of the same projection. Of several codes in one name
+/// the first is that of the plan.
 pub fn epsg_of(text: &str) -> Option<u32> {
     if let Ok(number) = text.trim().parse::<u32>() {
         return is_plausible(number).then_some(number);
     }
-    let text = text.to_ascii_uppercase();
     if text.contains('[') {
-        return of_well_known_text(&text);
+        return well_known::code_of(text).filter(|&code| is_plausible(code));
     }
-    let (_, after) = text.rsplit_once("EPSG")?;
-    code_in(after)
+    let upper = text.to_ascii_uppercase();
+    let named = upper.split("EPSG").skip(1).find_map(code_in);
+    named.or_else(|| well_known::code_of(text))
 }
 
-/// The number that follows "EPSG".
+/// The number that follows "EPSG", perhaps behind the version of the registry.
 fn code_in(after: &str) -> Option<u32> {
-    let digits: String = (after.chars().skip_while(|c| "\",: /0".contains(*c)))
-        .take_while(char::is_ascii_digit)
-        .collect();
-    digits.parse().ok().filter(|&n| is_plausible(n))
-}
-
-/// The code that stands directly in the outermost brackets, else in those of a compound's
-/// horizontal part.
-fn of_well_known_text(text: &str) -> Option<u32> {
-    let mut open: Vec<&str> = Vec::new();
-    let mut of_part = None;
-    let (mut word, mut quoted) = (0, false);
-    for (i, c) in text.char_indices() {
-        match c {
-            '"' => quoted = !quoted,
-            _ if quoted => {}
-            '[' => {
-                let name = text[word..i].trim();
-                let inside = &text[i + 1..];
-                if matches!(name, "AUTHORITY" | "ID") && inside.starts_with("\"EPSG\"") {
-                    let code = code_in(&inside["\"EPSG\"".len()..]);
-                    match open[..] {
-                        [_] => return code,
-                        [
-                            "COMPD_CS" | "COMPOUNDCRS",
-                            "PROJCS" | "PROJCRS" | "GEOGCS" | "GEOGCRS",
-                        ] => {
-                            of_part = code;
-                        }
-                        _ => {}
-                    }
-                }
-                open.push(name);
-                word = i + 1;
-            }
-            ']' => {
-                open.pop();
-                word = i + 1;
-            }
-            ',' => word = i + 1,
-            _ => {}
-        }
-    }
-    of_part
+    let between = after.find(|c: char| !c.is_ascii_digit() && !"\",:/.# XML".contains(c));
+    let numbers = after[..between.unwrap_or(after.len())].split(|c: char| !c.is_ascii_digit());
+    let mut codes = numbers.filter_map(|digits| digits.parse().ok());
+    codes.find(|&code| is_plausible(code))
 }
 
 fn is_plausible(number: u32) -> bool {
@@ -145,5 +137,88 @@ mod tests {
         ] {
             assert_eq!(epsg_of(broken), None);
         }
+    }
+
+    #[test]
+    fn systems_that_are_written_out_have_the_code_of_their_plane() {
+        let esri = |datum: &str, meridian: &str, unit: &str, east: &str| {
+            format!(
+                "PROJCS[\"p\",GEOGCS[\"g\",DATUM[\"{datum}\",SPHEROID[\"s\",6378137.0,298.257]],\
+                 PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],\
+                 PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"False_Easting\",{east}],\
+                 PARAMETER[\"False_Northing\",0.0],PARAMETER[\"Central_Meridian\",{meridian}],\
+                 PARAMETER[\"Scale_Factor\",0.9996],PARAMETER[\"Latitude_Of_Origin\",0.0],\
+                 UNIT[\"u\",{unit}]]"
+            )
+        };
+        let wkt2 = "PROJCRS[\"p\",BASEGEOGCRS[\"b\",DATUM[\"World Geodetic System 1984\",\
+                    ELLIPSOID[\"WGS 84\",6378137,298.257223563,LENGTHUNIT[\"metre\",1]]]],\
+                    CONVERSION[\"c\",METHOD[\"Transverse Mercator\",ID[\"EPSG\",9807]],\
+                    PARAMETER[\"Latitude of natural origin\",0],PARAMETER[\"Longitude of natural \
+                    origin\",9],PARAMETER[\"Scale factor at natural origin\",0.9996],\
+                    PARAMETER[\"False easting\",500000],PARAMETER[\"False northing\",0]],\
+                    CS[Cartesian,2],AXIS[\"e\",east],AXIS[\"n\",north],LENGTHUNIT[\"metre\",1]]";
+        for (text, code) in [
+            (esri("D_ETRS_1989", "9.0", "1.0", "500000.0"), Some(32632)),
+            (esri("D_WGS_1984", "-75", "1", "500000"), Some(32618)),
+            (esri("D_North_American_1983", "-75", "0.3048", "1640419.9475065617"), Some(32618)),
+            (esri("D_Deutsches_Hauptdreiecksnetz", "9.0", "1.0", "500000.0"), None),
+            (wkt2.to_owned(), Some(32632)),
+            ("+proj=utm +zone=32 +ellps=GRS80 +units=m +no_defs".to_owned(), Some(32632)),
+            ("+proj=utm +zone=23 +south +datum=WGS84".to_owned(), Some(32723)),
+            ("+proj=tmerc +lon_0=9 +k=0.9996 +x_0=500000 +ellps=GRS80".to_owned(), Some(32632)),
+            ("+proj=utm +zone=32 +ellps=bessel".to_owned(), None),
+            ("+proj=utm +zone=32 +ellps=GRS80 +towgs84=598,73,418".to_owned(), None),
+            ("+proj=longlat +datum=WGS84".to_owned(), Some(4326)),
+            ("GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\"]]".to_owned(), Some(4326)),
+            ("COMPD_CS[\"c\",PROJCS[\"p\",AUTHORITY[\"EPSG\",\"25832\"]],VERT_CS[\"v\"],AUTHORITY[\"EPSG\",\"5555\"]]".to_owned(), Some(5555)),
+            ("urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837".to_owned(), Some(25832)),
+            ("urn:ogc:def:crs:EPSG:10.0:2056".to_owned(), Some(2056)),
+            ("http://www.opengis.net/gml/srs/epsg.xml#3006".to_owned(), Some(3006)),
+        ] {
+            assert_eq!(epsg_of(&text), code, "{text}");
+        }
+    }
+
+    #[test]
+    fn codes_stand_for_planes() {
+        use crate::orienting::orientation::{is_geographic, plane_of};
+        for (a, b) in [
+            (25832, 5555),
+            (28992, 7415),
+            (2154, 5698),
+            (27700, 7405),
+            (26914, 6343),
+            (32118, 2263),
+            (2263, 6539),
+            (28355, 7855),
+            (3006, 32633),
+            (25833, 3045),
+            (31983, 32723),
+            (6677, 2451),
+        ] {
+            assert_eq!(plane_of(a), plane_of(b), "{a} {b}");
+        }
+        for (a, b) in [
+            (25832, 25833),
+            (31467, 25832),
+            (2056, 21781),
+            (28992, 31370),
+            (5514, 5513),
+            (32632, 32732),
+            (4647, 25832),
+            (3857, 4326),
+            (23032, 25832),
+        ] {
+            assert_ne!(plane_of(a), plane_of(b), "{a} {b}");
+        }
+        for degrees in [4326, 4979, 4258, 4269, 6318, 7844, 4674, 9518, 4937] {
+            assert!(is_geographic(degrees), "{degrees}");
+        }
+        for other in [4314, 4277, 4978, 25832, 0, 32_767] {
+            assert!(!is_geographic(other), "{other}");
+        }
+        // What stands for others stands for itself.
+        assert!((0..=32_767).all(|code| plane_of(plane_of(code)) == plane_of(code)));
     }
 }

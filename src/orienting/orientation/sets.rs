@@ -12,6 +12,7 @@ use super::image_orientation::Orientation;
 use super::input_file::InputFile;
 use super::reference::{self, StatedReference};
 use crate::base::error::Result;
+use crate::photographs::raster::image_header;
 
 /// Files that together orient images: one candidate for the orientation of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +35,7 @@ impl OrientationSet {
             _ => ".P",
         };
         match &self.files[..] {
-            files if files.len() <= 2 || self.format == Format::Bundler => files
+            files if files.len() <= 2 || has_further(self.format) => files
                 .iter()
                 .take(2)
                 .map(|&i| &*inputs[i].path)
@@ -54,6 +55,9 @@ impl OrientationSet {
             Format::Inpho => reference::of_inpho(&first),
             Format::Blocks => blocks::reference(&first, group),
             Format::OpenSfm => opensfm::reference(&first, text(1).as_deref(), group),
+            Format::Colmap | Format::ColmapBinary => {
+                text(2).map_or(StatedReference::None, |text| reference::of_orient(&text))
+            }
             Format::Pix4d | Format::Pmatrix if self.files.len() == 1 => StatedReference::Local(
                 "its positions count from the zero of an _offset.xyz, which is not among the files"
                     .to_owned(),
@@ -104,7 +108,9 @@ impl OrientationSet {
             Format::OpenSfm => opensfm::read(path, text, warnings),
             Format::Shots => opensfm::read_shots(file(0), further(1), warnings),
             Format::Krc => krc::read(path, text),
-            Format::Nerfstudio => nerfstudio::read(path, text, warnings),
+            Format::Nerfstudio => {
+                nerfstudio::read(path, text, &|name| size_of_image(inputs, name), warnings)
+            }
             Format::Bundler => bundles::read_bundler(file(0), file(1), further(2), warnings),
             Format::Nvm => bundles::read_nvm(path, text),
             Format::Middlebury => matrices::read_middlebury(path, text),
@@ -114,6 +120,40 @@ impl OrientationSet {
             Format::Projection => each(&texts, projection::read),
         }
     }
+}
+
+/// May files stand behind the two that a format's label names?
+fn has_further(format: Format) -> bool {
+    matches!(
+        format,
+        Format::Bundler | Format::Colmap | Format::ColmapBinary
+    )
+}
+
+/// The size of the image that a name with or without folders and extension means.
+fn size_of_image(inputs: &[InputFile], name: &str) -> Option<[u32; 2]> {
+    let name = name.replace('\\', "/");
+    let name = name.trim_start_matches(['.', '/']);
+    let ends = |path: &str| {
+        path.strip_suffix(name)
+            .is_some_and(|p| p.is_empty() || p.ends_with('/'))
+    };
+    let bare = |path: &str| {
+        path.rsplit_once('.')
+            .map_or(path.to_owned(), |(bare, _)| bare.to_owned())
+    };
+    let header = |file: &InputFile| image_header(&file.path, file.content()).ok();
+    let stem = super::input_file::stem(name);
+    let mut fitting = inputs
+        .iter()
+        .filter(|f| ends(&f.path) || ends(&bare(&f.path)));
+    let mut called = inputs
+        .iter()
+        .filter(|f| super::input_file::stem(&f.path) == stem);
+    let found = fitting
+        .find_map(header)
+        .or_else(|| called.find_map(header))?;
+    Some([found.width, found.height])
 }
 
 fn each<T: AsRef<str>>(
@@ -227,6 +267,9 @@ fn add_files_beside(inputs: &[InputFile], kinds: &[FileKind], set: &mut Orientat
                 .or_else(|| beside(FileKind::OpenSfmCameras).next())
                 .or_else(|| odms().next().filter(|_| odms().count() == 1))
                 .or_else(|| only(FileKind::OpenSfmCameras))
+        }
+        Format::Colmap | Format::ColmapBinary => {
+            beside(FileKind::ReferenceSystem).find(|&i| named(i, reference::OF_ORIENT))
         }
         Format::OpenSfm => {
             beside(FileKind::ReferenceSystem).find(|&i| named(i, "reference_lla.json"))

@@ -15,35 +15,39 @@ use crate::base::math::{asin, asinh, atan2, cos, cosh, ln, sin, sinh};
 /// Third flattening of WGS84; that of GRS80 differs by 8e-12: 0.1 mm in latitude.
 const N: f64 = 1.679_220_386_383_705e-3;
 
-/// A projection of UTM's kind.
+/// A transverse Mercator projection of the ellipsoid of WGS84.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TransverseMercator {
-    central_meridian_deg: f64,
-    false_northing_m: f64,
+    pub(super) central_meridian_deg: f64,
+    /// Scale on the central meridian.
+    pub(super) scale: f64,
+    /// Easting of the central meridian, metres.
+    pub(super) false_easting_m: f64,
+    /// Northing of the equator, metres.
+    pub(super) equator_m: f64,
 }
 
-/// What all of them have: the scale on the central meridian, and its easting.
-const CENTRAL_SCALE: f64 = 0.9996;
-const FALSE_EASTING_M: f64 = 500_000.0;
-
 impl TransverseMercator {
-    /// The projection of a code: UTM of WGS84, ETRS89 and NAD83, SWEREF99 TM. `None` for others.
-    /// The datums count as one: ETRS89 and NAD83 are off WGS84 by a metre or two, and all of a
-    /// scene alike.
-    pub(crate) fn of_epsg(code: u32) -> Option<Self> {
-        let (zone, false_northing_m) = match code {
-            32_601..=32_660 => (code - 32_600, 0.0),
-            32_701..=32_760 => (code - 32_700, 10_000_000.0),
-            25_828..=25_838 => (code - 25_800, 0.0),
-            26_901..=26_923 => (code - 26_900, 0.0),
-            // Zone 33 all over Sweden.
-            3006 => (33, 0.0),
-            _ => return None,
+    /// One whose northing at this latitude of origin is stated, as definitions in words do.
+    pub(super) fn with_origin(self, lat_deg: f64, northing_m: f64) -> Self {
+        let at = Self {
+            equator_m: 0.0,
+            ..self
         };
-        Some(Self {
-            central_meridian_deg: 6.0 * f64::from(zone) - 183.0,
-            false_northing_m,
-        })
+        let [_, arc_m] = at.projected(self.central_meridian_deg, lat_deg);
+        Self {
+            equator_m: northing_m - arc_m,
+            ..self
+        }
+    }
+
+    /// Do both give the same coordinates within some centimetres?
+    pub(super) fn is_near(&self, other: &Self) -> bool {
+        // Files round the parameters; 1e-7 degrees are a centimetre, as 1e-8 of scale over 1000 km.
+        (self.central_meridian_deg - other.central_meridian_deg).abs() < 1e-7
+            && (self.scale - other.scale).abs() < 1e-8
+            && (self.false_easting_m - other.false_easting_m).abs() < 0.01
+            && (self.equator_m - other.equator_m).abs() < 0.1
     }
 
     /// Easting and northing of a longitude and a latitude in degrees, metres (equations 7 to 11 of
@@ -73,10 +77,10 @@ impl TransverseMercator {
             xi += alpha * sin(twice * xi1) * cosh(twice * eta1);
             eta += alpha * cos(twice * xi1) * sinh(twice * eta1);
         }
-        let scale = CENTRAL_SCALE * radius();
+        let scale = self.scale * radius();
         [
-            scale * eta + FALSE_EASTING_M,
-            scale * xi + self.false_northing_m,
+            scale * eta + self.false_easting_m,
+            scale * xi + self.equator_m,
         ]
     }
 
@@ -96,8 +100,8 @@ impl TransverseMercator {
             4279.0 / 630.0 * n4,
         ];
         let radius = radius();
-        let xi = (northing - self.false_northing_m) / (CENTRAL_SCALE * radius);
-        let eta = (easting - FALSE_EASTING_M) / (CENTRAL_SCALE * radius);
+        let xi = (northing - self.equator_m) / (self.scale * radius);
+        let eta = (easting - self.false_easting_m) / (self.scale * radius);
         let (mut xi1, mut eta1) = (xi, eta);
         for (i, beta) in beta.iter().enumerate() {
             let twice = 2.0 * (i as f64 + 1.0);

@@ -1,9 +1,10 @@
 //! Terrain, footprints and point clouds among the files: those that the options name, else the only
 //! ones.
 
-use nalgebra::Vector3;
+use nalgebra::{Point2, Vector3};
 
 use super::input::LoadOptions;
+use super::names::belongs_to;
 use crate::base::error::{Error, Result, listed};
 use crate::orienting::known::{
     FOOTPRINT_ACCURACY_M, Known, POINT_CLOUD_ACCURACY_M, PointCloud, Register, TERRAIN_ACCURACY_M,
@@ -31,57 +32,139 @@ pub(super) fn kinds_of(files: &[InputFile], options: &LoadOptions) -> Vec<FileKi
     files.iter().map(kind).collect()
 }
 
-/// Reads what is known, for a scene with this system and origin; with what is to be said of it.
-/// `area` is the region of interest or the box of what the views show, local frame: of a point
-/// cloud only the surroundings are kept.
-pub(super) fn read_known(
-    files: &[InputFile],
-    kinds: &[FileKind],
-    options: &LoadOptions,
-    system: &WorldSystem,
-    origin: Vector3<f64>,
-    area: Option<[f64; 4]>,
-) -> Result<(Known, Vec<String>)> {
-    let mut warnings = Vec::new();
-    let [terrain, footprints, cloud] = meant(files, kinds, options, &mut warnings)?;
-    let terrain = match terrain {
-        Some(file) => {
-            let accuracy_m = options.terrain_accuracy_m.unwrap_or(TERRAIN_ACCURACY_M);
-            match Terrain::read(file, system, origin, accuracy_m) {
-                // Its roofs are of use without its ground.
-                Err(problem) if options.terrain.is_none() && is_cloud(file) => {
-                    warnings.push(format!("as terrain it is not used: {problem}"));
-                    None
-                }
-                read => Some(read?),
-            }
-        }
-        None => None,
-    };
-    let cloud = cloud.map(|file| {
-        let accuracy_m = options
-            .point_cloud_accuracy_m
-            .unwrap_or(POINT_CLOUD_ACCURACY_M);
-        let around = |[x0, y0, x1, y1]: [f64; 4]| {
-            [
-                x0 - POINTS_MARGIN_M,
-                y0 - POINTS_MARGIN_M,
-                x1 + POINTS_MARGIN_M,
-                y1 + POINTS_MARGIN_M,
-            ]
+/// The scene that things are known of.
+pub(super) struct KnownOf<'a> {
+    pub system: WorldSystem,
+    pub origin: Vector3<f64>,
+    /// The region of interest or the box of what the views show, local frame: of a point cloud
+    /// only the surroundings are kept.
+    pub area: Option<[f64; 4]>,
+    /// Places on the ground that three or more views show, on a grid, local frame.
+    pub places: Vec<Point2<f64>>,
+    /// The area of these places, square metres.
+    pub shown_m2: f64,
+    pub options: &'a LoadOptions,
+}
+
+/// A file, and whether an option names it: what lies there by chance refuses nothing.
+#[derive(Clone, Copy)]
+struct Meant<'a> {
+    file: &'a InputFile,
+    is_named: bool,
+}
+
+impl Meant<'_> {
+    /// What was read; of a file that nobody named a refusal is only said.
+    fn used<T>(&self, read: Result<T>, warnings: &mut Vec<String>) -> Result<Option<T>> {
+        let said = match &read {
+            _ if self.is_named => return read.map(Some),
+            Ok(_) => format!("{} is used: it lies among the files", self.file.path),
+            Err(problem) => format!("{LEFT_OUT} {problem}"),
         };
-        PointCloud::read(file, system, origin, accuracy_m, area.map(around))
-    });
-    let register = footprints.map(|file| {
-        let accuracy_m = options.footprint_accuracy_m.unwrap_or(FOOTPRINT_ACCURACY_M);
-        Register::read(file, system, origin, accuracy_m, &mut warnings)
-    });
-    let known = Known {
-        terrain,
-        footprints: register.transpose()?.map(Into::into),
-        point_cloud: cloud.transpose()?.map(Into::into),
-    };
-    Ok((known, warnings))
+        if !warnings.contains(&said) {
+            warnings.push(said);
+        }
+        Ok(read.ok())
+    }
+}
+
+/// What stands before the reason why a file that nobody named was left out.
+const LEFT_OUT: &str = "left out, since it only lies among the files:";
+
+impl KnownOf<'_> {
+    /// Reads what is known, with what is to be said of it.
+    pub(super) fn read(
+        &self,
+        files: &[InputFile],
+        kinds: &[FileKind],
+    ) -> Result<(Known, Vec<String>)> {
+        let mut warnings = Vec::new();
+        let [terrain, footprints, cloud] = meant(files, kinds, self.options, &mut warnings)?;
+        let mut known = Known::default();
+        if let Some(meant) = terrain {
+            let beside = files.iter().zip(kinds).find(|(file, kind)| {
+                **kind == FileKind::ReferenceSystem && belongs_to(file, meant.file)
+            });
+            let beside = beside.map(|(file, _)| file.text());
+            known.terrain = self.terrain(meant, beside.as_deref(), &mut warnings)?;
+        }
+        if let Some(meant) = cloud {
+            let read = self.point_cloud(meant.file);
+            known.point_cloud = meant.used(read, &mut warnings)?.map(Into::into);
+        }
+        if let Some(meant) = footprints {
+            let mut said = Vec::new();
+            let read = self.footprints(meant, &mut said);
+            known.footprints = meant.used(read, &mut warnings)?.map(Into::into);
+            warnings.extend(said);
+        }
+        Ok((known, warnings))
+    }
+
+    fn terrain(
+        &self,
+        meant: Meant,
+        beside: Option<&str>,
+        warnings: &mut Vec<String>,
+    ) -> Result<Option<Terrain>> {
+        let accuracy_m = self
+            .options
+            .terrain_accuracy_m
+            .unwrap_or(TERRAIN_ACCURACY_M);
+        let read = Terrain::read(meant.file, beside, &self.system, self.origin, accuracy_m);
+        let is_roofs = self.options.point_cloud.as_ref() == Some(&meant.file.path);
+        let found = match read {
+            // Its roofs are of use without its ground.
+            Err(problem) if !meant.is_named && is_cloud(meant.file) => {
+                warnings.push(format!("as terrain it is not used: {problem}"));
+                None
+            }
+            // A cloud that is named is the terrain by that.
+            Ok(terrain) if is_roofs => Some(terrain),
+            read => meant.used(read, warnings)?,
+        };
+        warnings.extend(found.as_ref().and_then(Terrain::notice));
+        Ok(found)
+    }
+
+    fn point_cloud(&self, file: &InputFile) -> Result<PointCloud> {
+        let stated = self.options.point_cloud_accuracy_m;
+        let around = |[x0, y0, x1, y1]: [f64; 4]| {
+            let margin = POINTS_MARGIN_M;
+            [x0 - margin, y0 - margin, x1 + margin, y1 + margin]
+        };
+        PointCloud::read(
+            file,
+            &self.system,
+            self.origin,
+            stated.unwrap_or(POINT_CLOUD_ACCURACY_M),
+            self.area.map(around),
+        )
+    }
+
+    fn footprints(&self, meant: Meant, said: &mut Vec<String>) -> Result<Register> {
+        let stated = self.options.footprint_accuracy_m;
+        let accuracy_m = stated.unwrap_or(FOOTPRINT_ACCURACY_M);
+        let read = Register::read(meant.file, &self.system, self.origin, accuracy_m, said)?;
+        let register = read.without_areas(&self.places, self.shown_m2, said)?;
+        let is_elsewhere = self.area.is_some_and(|area| !register.reaches(area));
+        if is_elsewhere && !meant.is_named {
+            return Err(Error::File {
+                file: register.file,
+                problem: "none of its footprints lies where the photographs do".to_owned(),
+                advice: "name its system in it, or leave it out (--without)".to_owned(),
+            });
+        }
+        Ok(register)
+    }
+}
+
+/// Is a raster called a surface model, as programs call theirs (dsm.tif, odm_dem/dsm.tif,
+/// site_DOM.tif)? Its roofs are no ground.
+fn is_surface_model(file: &InputFile) -> bool {
+    let name = file.name().to_ascii_lowercase();
+    let mut words = name.split(|c: char| !c.is_ascii_alphanumeric());
+    words.any(|word| ["dsm", "dom", "ndsm", "ndom", "chm"].contains(&word))
 }
 
 fn is_cloud(file: &InputFile) -> bool {
@@ -94,7 +177,7 @@ fn meant<'a>(
     kinds: &[FileKind],
     options: &LoadOptions,
     warnings: &mut Vec<String>,
-) -> Result<[Option<&'a InputFile>; 3]> {
+) -> Result<[Option<Meant<'a>>; 3]> {
     let of_kind = |kind: FileKind| {
         let all = files.iter().zip(kinds);
         all.filter(move |(file, k)| **k == kind && !options.unused.contains(&file.path))
@@ -108,20 +191,30 @@ fn meant<'a>(
     };
     let registers: Vec<&InputFile> = of_kind(FileKind::Footprints).filter(is_register).collect();
     // Beside a grid a cloud is asked for its roofs only.
-    let grids: Vec<&InputFile> = terrains.iter().copied().filter(|f| !is_cloud(f)).collect();
-    let grounds = if grids.is_empty() { &terrains } else { &grids };
+    let (surfaces, grids): (Vec<&InputFile>, Vec<&InputFile>) = (terrains.iter().copied())
+        .filter(|f| !is_cloud(f))
+        .partition(|f| is_surface_model(f));
+    let clouds: Vec<&InputFile> = terrains.iter().copied().filter(|f| is_cloud(f)).collect();
+    let grounds = if grids.is_empty() { &clouds } else { &grids };
+    let named = options.terrain.as_deref();
+    let surfaces = surfaces.iter().filter(|file| Some(&*file.path) != named);
+    warnings.extend(surfaces.map(|file| {
+        format!(
+            "{LEFT_OUT} {} is a surface model by its name, and roofs are no ground",
+            file.path
+        )
+    }));
     let terrain = match options.ground_z {
         Some(_) => None,
-        None => chosen(files, options.terrain.as_deref(), grounds, warnings)?,
+        None => chosen(files, named, grounds, warnings)?,
     };
     let footprints = chosen(files, options.footprints.as_deref(), &registers, warnings)?;
-    let clouds: Vec<&InputFile> = match (&options.terrain, terrain) {
-        // The cloud that is named as the terrain is the one that is meant.
-        (Some(_), Some(file)) if is_cloud(file) => vec![file],
-        _ => terrains.iter().copied().filter(|f| is_cloud(f)).collect(),
-    };
     let mut said = Vec::new();
-    let cloud = chosen(files, options.point_cloud.as_deref(), &clouds, &mut said)?;
+    let cloud = match (&options.point_cloud, named, terrain) {
+        // The cloud that is named as the terrain is the one that is meant.
+        (None, Some(_), Some(meant)) if is_cloud(meant.file) => Some(meant),
+        _ => chosen(files, options.point_cloud.as_deref(), &clouds, &mut said)?,
+    };
     // The same may have been said of them as terrain.
     said.retain(|said| !warnings.contains(said));
     warnings.extend(said);
@@ -134,7 +227,8 @@ fn chosen<'a>(
     named: Option<&str>,
     of_kind: &[&'a InputFile],
     warnings: &mut Vec<String>,
-) -> Result<Option<&'a InputFile>> {
+) -> Result<Option<Meant<'a>>> {
+    let meant = |file: &'a InputFile, is_named: bool| Some(Meant { file, is_named });
     match (named, of_kind) {
         (Some(path), _) => {
             let file = files.iter().find(|file| file.path == path);
@@ -143,13 +237,10 @@ fn chosen<'a>(
                 problem: "it is not among the files".to_owned(),
                 advice: "add it to them".to_owned(),
             };
-            Ok(Some(file.ok_or_else(missing)?))
+            Ok(meant(file.ok_or_else(missing)?, true))
         }
         (None, []) => Ok(None),
-        (None, [file]) => {
-            warnings.push(format!("{} is used: it lies among the files", file.path));
-            Ok(Some(file))
-        }
+        (None, [file]) => Ok(meant(file, false)),
         (None, several) => {
             let names = listed(several.iter().map(|file| &*file.path));
             warnings.push(format!(

@@ -5,8 +5,8 @@ use super::checks::check_and_correct;
 use super::decode::{decode_all, needed};
 use super::ground::{files_of_ground, files_of_settling, plan_scene, settled, whole_plan};
 use super::input::LoadOptions;
-use super::inspect::box_of_views;
-use super::known_files::read_known;
+use super::inspect::{box_of_views, shown_places};
+use super::known_files::KnownOf;
 use super::plan::Plan;
 use super::planned_view::PlannedView;
 use super::region;
@@ -121,31 +121,38 @@ fn add_known(
     kinds: &[FileKind],
     options: &LoadOptions,
 ) -> Result<()> {
-    let system = WorldSystem {
-        epsg: scene.survey.epsg,
-        anchor: scene.survey.anchor,
-    };
     let local = |[x0, y0, x1, y1]: [f64; 4]| {
         let [x, y] = [scene.origin.x, scene.origin.y];
         [x0 - x, y0 - y, x1 - x, y1 - y]
     };
     scene.region = options.roi.map(local);
-    let area = scene.region.or_else(|| area_of_views(scene));
-    let (known, warnings) = read_known(files, kinds, options, &system, scene.origin, area)?;
+    let (known, warnings) = known_of(scene, options).read(files, kinds)?;
     scene.known = known;
     scene.warnings.extend(warnings);
     Ok(())
 }
 
-/// The box of what the views show, local frame; `None` where they do not tell how high the ground
-/// is.
-fn area_of_views(scene: &Scene) -> Option<[f64; 4]> {
+/// The scene as what is known of it is read, as far as the views tell how high the ground is.
+fn known_of<'a>(scene: &Scene, options: &'a LoadOptions) -> KnownOf<'a> {
     let named: Vec<(&str, &Camera)> = (scene.views.iter())
         .map(|view| (&*view.name, &view.camera))
         .collect();
-    let heights = check_cameras(&named, scene.ground_z).heights?;
     let cameras: Vec<&Camera> = scene.views.iter().map(|view| &view.camera).collect();
-    box_of_views(&cameras, heights)
+    let heights = check_cameras(&named, scene.ground_z).heights;
+    let shown = heights.map(|[low, high]| shown_places(&cameras, 0.5 * (low + high)));
+    let (places, step) = shown.unwrap_or_default();
+    let of_views = || box_of_views(&cameras, heights?);
+    KnownOf {
+        system: WorldSystem {
+            epsg: scene.survey.epsg,
+            anchor: scene.survey.anchor,
+        },
+        origin: scene.origin,
+        area: scene.region.or_else(of_views),
+        shown_m2: places.len() as f64 * step * step,
+        places,
+        options,
+    }
 }
 
 /// Do the images agree, each with some others?

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::orienting::orientation::{InputFile, stem};
+
 /// The names of views: without folders, or with as many as tell them apart.
 pub(crate) fn view_names(paths: &[&str]) -> Vec<String> {
     let parts: Vec<Vec<&str>> = paths.iter().map(|p| p.rsplit('/').collect()).collect();
@@ -28,6 +30,12 @@ pub(crate) fn view_names(paths: &[&str]) -> Vec<String> {
             depths[i] += 1;
         }
     }
+}
+
+/// Does a file state the system of another one, by its name beside it?
+pub(crate) fn belongs_to(stating: &InputFile, other: &InputFile) -> bool {
+    let key = |file: &InputFile| stem(file.name()).to_lowercase();
+    stating.path != other.path && stating.folder() == other.folder() && key(stating) == key(other)
 }
 
 #[cfg(test)]

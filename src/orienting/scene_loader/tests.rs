@@ -1,5 +1,7 @@
 //! Each kind of bad input and the words of its refusal.
 
+mod beside;
+
 use nalgebra::Point2;
 
 use super::{LoadOptions, inspect_files, load_scene};

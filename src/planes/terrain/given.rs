@@ -11,7 +11,7 @@ use super::Ground;
 use super::common_plane::{ONE_HEIGHT, low_height};
 use crate::base::geometry::Plane;
 use crate::base::math::{hypot, larger, median};
-use crate::orienting::known::{KnownComparison, KnownShift, Terrain};
+use crate::orienting::known::{KnownComparison, KnownShift, MOST_DATUM_M, Terrain};
 
 /// Standard deviation of the ground as the images show it, metres, as in the comparison of the
 /// views on it: a few decimetres.
@@ -57,10 +57,13 @@ impl Ground {
             explained_m: [f64::INFINITY, certain],
         });
         let is_surface = offset.is_some_and(|up| self.is_surface(terrain, samples, up));
-        let belongs = if is_surface { 0.0 } else { 1.0 };
+        // Of a scene whose heights count from anywhere any shift may be.
+        let is_far_off = terrain.is_placed() && offset.is_some_and(|up| up.abs() > MOST_DATUM_M);
+        let is_none = is_surface || is_far_off;
+        let belongs = if is_none { 0.0 } else { 1.0 };
         let unused = KnownComparison::new(&terrain.file, terrain.accuracy_m);
         let mut comparison = unused.clone().judged(shift, belongs);
-        if !is_surface {
+        if !is_none {
             let lift = comparison.moved_m().z;
             let known = |p: &Point2<f64>| Some(terrain.z_at(p.x, p.y)? + lift);
             match self.laid(ends, known) {

@@ -27,7 +27,7 @@ use super::borders::Arrangement;
 use crate::base::evidence::EvidenceTerm;
 use crate::base::math::{erfc, larger, ln, normal_density, smaller};
 use crate::base::params::RegisterParams;
-use crate::orienting::known::{Register, belongs_here, best_shift};
+use crate::orienting::known::{Footprint, Register, belongs_here, best_shift};
 use crate::photographs::raster::mark_inside;
 use crate::planes::photoconsistency::PlanGrid;
 use crate::roofs::model::Facet;
@@ -144,6 +144,11 @@ impl<'a> RegisterEvidence<'a> {
             ..
         } = *self.params;
         self.belongs = belongs_here(belongs, [inside, outside], completeness, chance);
+        // Of what lies elsewhere nothing counts: a verdict is what is done.
+        let is_shown = |footprint: &Footprint| self.shown_inside(footprint).is_some();
+        if !self.register.footprints.iter().any(is_shown) {
+            self.belongs = 0.0;
+        }
     }
 
     /// What it says for a roof in every cell, nats.

@@ -98,7 +98,7 @@ fn read_known(file: &InputFile) {
         anchor: None,
     };
     let origin = [432_100.0, 5_412_300.0, 0.0].into();
-    let terrain = Terrain::read(file, &system, origin, 0.3);
+    let terrain = Terrain::read(file, None, &system, origin, 0.3);
     if let Ok(terrain) = &terrain {
         assert!(terrain.z_at(3.0, -2.0).is_none_or(f64::is_finite));
     }

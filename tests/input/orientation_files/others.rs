@@ -206,6 +206,29 @@ fn what_nerfstudio_applied_is_undone() {
     };
     refusal(&[(transforms.0, &scale("0.0").1)], &["applied_scale is 0"]);
     refusal(&[(transforms.0, &scale("-1").1)], &["applied_scale is -1"]);
+    // Angle and size make a focal length; the size may be that of the image alone.
+    let mut files = super::images();
+    let names: Vec<String> = files.iter().map(|file| file.path.clone()).collect();
+    let frames: Vec<String> = (names.iter())
+        .map(|name| format!("{{\"file_path\": \"./{name}\", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,9]]}}"))
+        .collect();
+    let angle = 2.0 * 0.5f64.atan();
+    let text = format!(
+        "{{\"camera_angle_x\": {angle}, \"frames\": [{}]}}",
+        frames.join(",")
+    );
+    files.push(ridgeline::orienting::orientation::InputFile::new(
+        "transforms.json",
+        text.into_bytes(),
+    ));
+    let kinds: Vec<_> = files
+        .iter()
+        .map(ridgeline::orienting::orientation::detect)
+        .collect();
+    let (sets, _) = ridgeline::orienting::orientation::orientation_sets(&files, &kinds);
+    let found = sets[0].read(&files, &mut Vec::new()).unwrap();
+    assert_eq!((found.len(), found[0].size), (3, Some((16, 12))));
+    near(&found[0].k, &k(16.0, 0.0, 16.0, 8.0, 6.0));
     // One lens of several: the others are read.
     let one = transforms.1.replacen(
         "\"fl_x\": 900",

@@ -6,7 +6,8 @@
 //! straight lines, the shorter ones weighing more; beyond the points nothing is.
 
 use crate::base::math::{hypot, larger};
-use crate::orienting::known::height_grid::HeightGrid;
+use crate::orienting::known::height_grid::{HeightGrid, Placement, StoredHeights};
+use crate::orienting::known::system::Way;
 
 /// Points of the ground.
 pub(super) struct GroundPoints {
@@ -82,7 +83,17 @@ impl GroundPoints {
             .map(|z| z.map_or(f32::NAN, |z| (z + offset[2]) as f32))
             .collect();
         let first = [x0 + offset[0] + 0.5 * cell, y1 + offset[1] - 0.5 * cell];
-        HeightGrid::new(first, [cell; 2], [columns, rows], heights, None)
+        let place = Placement {
+            first,
+            cell: [cell; 2],
+            columns,
+            rows,
+        };
+        HeightGrid::new(
+            place,
+            StoredHeights::as_they_are(heights, None),
+            Way::same(),
+        )
     }
 }
 

@@ -126,18 +126,11 @@ impl Header {
             let text = String::from_utf8_lossy(text);
             let text = text.trim_matches(['\0', ' ', '\n']);
             if !text.is_empty() {
-                let lower = text.to_ascii_lowercase();
-                if ["\"foot", "foot\"", "feet", "us survey foot"]
-                    .iter()
-                    .any(|unit| lower.contains(unit))
-                {
-                    return Err("its coordinates or heights are in feet".to_owned());
-                }
                 return Ok(StatedSystem::named(text));
             }
         }
         let Some(keys) = self.variable_record(bytes, PROJECTION, GEO_KEYS) else {
-            return Ok(StatedSystem::Unstated);
+            return Ok(StatedSystem::unstated());
         };
         let keys: Vec<u64> = (keys.chunks_exact(2))
             .map(|pair| u64::from(u16_at(pair, 0)))

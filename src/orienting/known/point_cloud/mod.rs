@@ -29,7 +29,7 @@ use self::header::Header;
 use self::thinned::Thinned;
 use super::height_grid::HeightGrid;
 use super::refusal::refusal;
-use super::system::WorldSystem;
+use super::system::{Way, WorldSystem};
 use crate::base::error::Result;
 use crate::orienting::orientation::InputFile;
 
@@ -55,14 +55,22 @@ pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid>
     let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
     let mut points = GroundPoints::new();
     let mut others: BTreeMap<u8, u64> = BTreeMap::new();
-    let count = each_point(file, system, &mut |header, record| {
+    let count = each_point(file, system, &mut |header, way, record| {
         let [class, withheld] = header.class_of(record);
-        match class {
-            _ if withheld == 1 => {}
-            GROUND | WATER => points.push(header.position(record)),
+        let is_ground = match class {
+            GROUND | WATER => true,
             // Formats from 6 on have a flag for key points; 8 is reserved there.
-            KEY_POINT if header.format < 6 => points.push(header.position(record)),
-            _ => *others.entry(class).or_default() += 1,
+            KEY_POINT => header.format < 6,
+            _ => false,
+        };
+        match is_ground {
+            _ if withheld == 1 => {}
+            true => {
+                if let Some(position) = way.world_in_space(header.position(record)) {
+                    points.push(position);
+                }
+            }
+            false => *others.entry(class).or_default() += 1,
         }
     })?;
     if points.is_empty() {
@@ -87,10 +95,12 @@ pub(super) fn read_surface(
     within: Option<[f64; 4]>,
 ) -> Result<Vec<Point3<f32>>> {
     let mut points = Thinned::new(within);
-    each_point(file, system, &mut |header, record| {
+    each_point(file, system, &mut |header, way, record| {
         let [class, withheld] = header.class_of(record);
-        if withheld == 0 && !NO_SURFACE.contains(&class) {
-            let position = header.position(record);
+        if withheld == 0
+            && !NO_SURFACE.contains(&class)
+            && let Some(position) = way.world_in_space(header.position(record))
+        {
             points.push(Vector3::from(position) - origin);
         }
     })?;
@@ -103,12 +113,21 @@ const COPY_AGAIN: &str = "copy the file again, or export it again";
 fn each_point(
     file: &InputFile,
     system: &WorldSystem,
-    take: &mut dyn FnMut(&Header, &[u8]),
+    take: &mut dyn FnMut(&Header, &Way, &[u8]),
 ) -> Result<u64> {
     let damaged = |problem: String| refusal(&file.path, &problem, COPY_AGAIN);
     let bytes = &file.bytes[..];
-    let header = header_of(file, system)?;
+    let (header, way) = header_of(file, system)?;
     let records = header.records(bytes);
+    let mut is_first = true;
+    let mut placed = |record: &[u8]| {
+        let is_place = !is_first || way.world_in_space(header.position(record)).is_some();
+        is_first = false;
+        let problem = "its points are no places in longitude and latitude, which it states";
+        is_place
+            .then_some(())
+            .ok_or_else(|| damaged(problem.to_owned()))
+    };
     match header.is_compressed {
         false => {
             let length = usize::from(header.record_length);
@@ -118,8 +137,10 @@ fn each_point(
                 return Err(damaged(problem));
             }
             let all = records.chunks_exact(length);
-            all.take(header.count as usize)
-                .for_each(|record| take(&header, record));
+            for record in all.take(header.count as usize) {
+                placed(record)?;
+                take(&header, &way, record);
+            }
         }
         true => {
             let mut compressed = Compressed::new(&header, bytes).map_err(damaged)?;
@@ -131,15 +152,17 @@ fn each_point(
                         header.count
                     ))
                 })?;
-                take(&header, record);
+                placed(record)?;
+                take(&header, &way, record);
             }
         }
     }
     Ok(header.count)
 }
 
-/// The header of a file in the system of the scene, whose points are no more than can be read.
-fn header_of(file: &InputFile, system: &WorldSystem) -> Result<Header> {
+/// The header of a file whose points are no more than can be read, and the way from them to the
+/// world frame of the scene.
+fn header_of(file: &InputFile, system: &WorldSystem) -> Result<(Header, Way)> {
     let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
     let damaged = |problem: String| refuse(&problem, COPY_AGAIN);
     let bytes = &file.bytes[..];
@@ -150,7 +173,7 @@ fn header_of(file: &InputFile, system: &WorldSystem) -> Result<Header> {
             "convert it to the system of the orientation, in metres, as with pdal translate",
         )
     })?;
-    system.is_frame_of(&stated).map_err(|problem| {
+    let way = system.way_from(&stated).map_err(|problem| {
         refuse(
             &problem,
             "convert it to the system of the orientation, as with pdal translate and its filter \
@@ -175,7 +198,7 @@ fn header_of(file: &InputFile, system: &WorldSystem) -> Result<Header> {
         );
         return Err(damaged(problem));
     }
-    Ok(header)
+    Ok((header, way))
 }
 
 /// The classes that points have instead, the most frequent ones.

@@ -271,10 +271,10 @@ fn systems_are_those_of_the_orientation_or_refused() {
     }
     let feet = "PROJCS[\"a\",UNIT[\"US survey foot\",0.3048]]";
     for (record, problem) in [
-        (keys(&[[1024, 1], [3072, 25833]]), "EPSG:25833"),
+        (keys(&[[1024, 1], [3072, 28992]]), "EPSG:28992"),
         (keys(&[[1024, 2]]), "longitude and latitude"),
-        (keys(&[[3072, 25832], [3076, 9003]]), "not in metres"),
-        (text(feet), "in feet"),
+        (keys(&[[3072, 25832], [3076, 9014]]), "not in metres"),
+        (text(feet), "in international feet"),
         (text(&own.replace("25832", "31467")), "EPSG:31467"),
     ] {
         let cloud = Planted {

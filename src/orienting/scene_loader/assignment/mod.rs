@@ -68,9 +68,35 @@ struct Rank {
     size: SizeFit,
     ending: NameEnding,
     is_elsewhere: bool,
+    /// By the folder that holds the image, among equal names.
+    folder: FolderKind,
     is_gray_png: bool,
     /// How many folders, from the outermost inwards, the image shares with the orientation file.
     near: Reverse<usize>,
+}
+
+/// What the name of a folder says of its images: data sets of 3D Gaussian splatting and nerfstudio
+/// hold the photographs of the model in `images`, and copies of the same names beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum FolderKind {
+    /// `images`.
+    Images,
+    Other,
+    /// `input` (before distortion was removed), or reduced by what the name ends with, `images_4`.
+    Copies,
+}
+
+impl FolderKind {
+    fn of(path: &str) -> Self {
+        let mut parts = path.rsplit('/').skip(1);
+        let folder = parts.next().unwrap_or_default().to_ascii_lowercase();
+        let reduced = folder.rsplit_once('_').map(|(_, factor)| factor);
+        match reduced.is_some_and(|factor| factor.parse::<u8>().is_ok()) {
+            _ if folder == "images" => Self::Images,
+            is_reduced if is_reduced || folder == "input" => Self::Copies,
+            _ => Self::Other,
+        }
+    }
 }
 
 /// A candidate.
@@ -191,6 +217,7 @@ fn rank(orientation: &Orientation, image: &ImageCandidate, fit: NameFit) -> Rank
         },
         ending: fit.ending,
         is_elsewhere: fit.is_elsewhere,
+        folder: FolderKind::of(image.path),
         is_gray_png: image.is_gray_png,
         near: Reverse(near),
     }

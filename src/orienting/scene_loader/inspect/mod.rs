@@ -6,8 +6,8 @@ mod flight;
 mod windows;
 
 pub use flight::{Flight, FlightOverview, Footprint, GroundSource, Overlap};
-pub(crate) use windows::box_of_views;
 pub use windows::{ShownArea, ViewWindow, region_windows};
+pub(crate) use windows::{box_of_views, shown_places};
 
 use serde::Serialize;
 

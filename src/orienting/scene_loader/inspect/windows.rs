@@ -132,7 +132,7 @@ pub(super) fn shows(camera: &Camera, p: &Point3<f64>, coarsest: f64) -> bool {
 
 /// The places of a grid on the ground at this height that enough cameras show, none of them much
 /// more coarsely than the middle of an image, and the step of the grid; local frame.
-fn shown_places(cameras: &[&Camera], z: f64) -> (Vec<Point2<f64>>, f64) {
+pub(crate) fn shown_places(cameras: &[&Camera], z: f64) -> (Vec<Point2<f64>>, f64) {
     let Some(coarsest) = coarsest_pixel(cameras, z) else {
         return (Vec::new(), 0.0);
     };

@@ -12,12 +12,14 @@ use super::assignment::ImageCandidate;
 use super::candidate::{Choice, OrientationCandidate, choose, take_group};
 use super::input::LoadOptions;
 use super::known_files::kinds_of;
+use super::names::belongs_to;
 use super::notices;
 use super::planned_view::{PlannedImage, PlannedView};
 use crate::base::error::{Error, listed};
 use crate::orienting::orientation::{
-    Anchor, FileKind, InputFile, Orientation, OrientationSet, PathName, StatedReference,
-    UnreadFormat, epsg_of, images_called, orientation_sets, to_metric_frame, unread_format,
+    Anchor, FileKind, InputFile, Orientation, OrientationSet, PathName, PlanUnit, StatedReference,
+    UnreadFormat, epsg_of, height_unit_of_code, images_called, is_geographic, linear_unit_of_code,
+    orientation_sets, plane_of, to_metric_frame, units_of, unread_format,
 };
 use crate::orienting::scene::Survey;
 use crate::photographs::raster::image_header;
@@ -195,7 +197,9 @@ impl Plan {
                 .take()
                 .map(|label| format!("{label}: {taken}"));
         }
-        let (epsg, anchor) = self.reference_of(set, files, taken.group.as_deref());
+        let is_stated = options.epsg.is_some();
+        let group = taken.group.as_deref();
+        let (epsg, anchor) = self.reference_of(set, files, group, is_stated);
         self.survey = Survey {
             epsg: options.epsg.or(epsg),
             anchor,
@@ -207,9 +211,23 @@ impl Plan {
         Some(orientations)
     }
 
-    /// Where the positions are places on the Earth the scene counts metres from one of them.
+    /// Where the positions are places on the Earth the scene counts metres from one of them, and
+    /// where they are lengths in another unit, that of the same plane in metres.
     fn count_in_metres(&mut self, orientations: &mut [Orientation]) {
-        let Some(anchor) = to_metric_frame(orientations) else {
+        let stated = self.survey.epsg;
+        let is_degrees = stated.is_some_and(is_geographic);
+        let Some(anchor) = to_metric_frame(orientations, is_degrees) else {
+            match stated {
+                Some(code) if is_degrees => self.errors.push(Error::Scene {
+                    problem: format!(
+                        "EPSG:{code} is longitude and latitude, and the positions of the cameras \
+                         are none"
+                    ),
+                    advice: "state the system that they are in (--crs EPSG:N)".to_owned(),
+                }),
+                Some(code) => self.count_feet_in_metres(code, orientations),
+                None => {}
+            }
             return;
         };
         self.warnings.push(format!(
@@ -223,14 +241,51 @@ impl Plan {
         };
     }
 
+    /// Positions in the unit of a code become metres in the same plane.
+    fn count_feet_in_metres(&mut self, code: u32, orientations: &mut [Orientation]) {
+        let Some(unit) = linear_unit_of_code(code).filter(|unit| !unit.is_metre()) else {
+            return;
+        };
+        let metric = plane_of(code);
+        if linear_unit_of_code(metric).is_none_or(|unit| !unit.is_metre()) {
+            self.errors.push(Error::Scene {
+                problem: format!(
+                    "EPSG:{code} is in {}, and no other code has the same plane in metres",
+                    unit.words()
+                ),
+                advice: "convert the orientation to a system in metres, or multiply its positions \
+                         by the metres of the unit and leave the system unstated"
+                    .to_owned(),
+            });
+            return;
+        }
+        let heights = height_unit_of_code(code).unwrap_or(unit);
+        for orientation in orientations.iter_mut() {
+            let [x, y, z] = orientation.center.into();
+            let (plan, height) = (unit.metres, heights.metres);
+            orientation.center = [x * plan, y * plan, z * height].into();
+        }
+        self.warnings.push(format!(
+            "the positions are in {} (EPSG:{code}); the model, its heights and areas are in metres, \
+             in EPSG:{metric}, which is the same plane in metres (--roi and --ground-z count there)",
+            unit.words()
+        ));
+        self.survey.epsg = Some(metric);
+    }
+
     /// EPSG code of the coordinates' system, or the place that they count from.
     fn reference_of(
         &mut self,
         set: &OrientationSet,
         files: &[InputFile],
         group: Option<&str>,
+        is_stated: bool,
     ) -> (Option<u32>, Option<Anchor>) {
-        let beside = self.stated_reference(files);
+        // What the user states makes what lies beside the orientation of no interest.
+        let beside = match is_stated {
+            true => None,
+            false => self.stated_beside(set, files),
+        };
         let (reason, anchor) = match set.reference(files, group) {
             StatedReference::None => return (beside.map(|(_, code)| code), None),
             StatedReference::System(code) => return (Some(code), None),
@@ -249,12 +304,79 @@ impl Plan {
         (None, anchor)
     }
 
-    /// The reference system that a file of its own names, and that file.
-    fn stated_reference<'a>(&self, files: &'a [InputFile]) -> Option<(&'a str, u32)> {
-        // Photographs are not searched as text.
-        (self.kinds.iter().zip(files))
-            .filter(|(kind, _)| **kind == FileKind::ReferenceSystem)
-            .find_map(|(_, file)| Some((&*file.path, epsg_of(&file.text())?)))
+    /// The reference system that a file of its own names, and that file: one that is called like a
+    /// file of the orientation, else one that is called like no other file.
+    fn stated_beside<'a>(
+        &mut self,
+        set: &OrientationSet,
+        files: &'a [InputFile],
+    ) -> Option<(&'a str, u32)> {
+        let mut own: Vec<(&'a str, u32)> = Vec::new();
+        let mut free: Vec<(&'a str, u32)> = Vec::new();
+        let mut of_others = Vec::new();
+        // Photographs are not searched as text, and JSON names places.
+        let stated = (self.kinds.iter().zip(files)).filter(|(kind, file)| {
+            **kind == FileKind::ReferenceSystem && !file.name().to_lowercase().ends_with(".json")
+        });
+        let stated: Vec<&InputFile> = stated.map(|(_, file)| file).collect();
+        for file in stated {
+            let text = file.text();
+            let Some(code) = epsg_of(&text) else {
+                self.refuse_unknown_feet(file, &text);
+                continue;
+            };
+            let is_beside = |other: &&InputFile| belongs_to(file, other);
+            match files.iter().find(is_beside) {
+                _ if set.files.iter().any(|&i| belongs_to(file, &files[i])) => {
+                    own.push((&file.path, code));
+                }
+                Some(other) => of_others.push(format!("{} to {}", file.path, other.path)),
+                None => free.push((&file.path, code)),
+            }
+        }
+        if own.is_empty() && free.is_empty() && !of_others.is_empty() {
+            self.warnings.push(format!(
+                "no system is stated of the orientation (--crs EPSG:N states it): by its name {} \
+                 belongs",
+                listed(of_others.iter())
+            ));
+        }
+        let meant = if own.is_empty() { &free } else { &own };
+        let [first, others @ ..] = &meant[..] else {
+            return None;
+        };
+        if let Some(other) = others
+            .iter()
+            .find(|other| plane_of(other.1) != plane_of(first.1))
+        {
+            self.warnings.push(format!(
+                "{} names EPSG:{} and {} EPSG:{}: none is taken for the orientation (--crs EPSG:N \
+                 states its system)",
+                first.0, first.1, other.0, other.1
+            ));
+            return None;
+        }
+        Some(*first)
+    }
+
+    /// A system without a code of which only the unit is known, and that is no metre.
+    fn refuse_unknown_feet(&mut self, file: &InputFile, text: &str) {
+        let Some(PlanUnit::Length(unit)) = units_of(text).map(|units| units.plan) else {
+            return;
+        };
+        if !unit.is_metre() && self.errors.is_empty() {
+            self.errors.push(Error::File {
+                file: file.path.clone(),
+                problem: format!(
+                    "it states coordinates in {}, of a system without a code",
+                    unit.words()
+                ),
+                advice:
+                    "state the system of the orientation (--crs EPSG:N), or leave the file out \
+                         (--without) if it is of something else"
+                        .to_owned(),
+            });
+        }
     }
 
     fn warn_of_json(&mut self, files: &[InputFile]) {

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use crate::base::geometry::{Plane, mean_point, plan_sides, vector_area};
 use crate::base::ids::{BuildingId, FacetId};
+use crate::orienting::orientation::{PlanUnit, SystemUnits, units_of};
 use crate::roofs::model::{
     Building, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
     Solid, SolidFace, Surface,
@@ -43,7 +44,8 @@ pub(super) fn read_model(bytes: &[u8]) -> Result<ReadModel, String> {
             _ => Err(format!("\"transform\" has no \"{name}\" of three numbers")),
         }
     };
-    let (scale, origin) = (vector("scale")?, vector("translate")?);
+    let units = units(&file["metadata"])?;
+    let [scale, origin] = [vector("scale")?, vector("translate")?].map(|v| v.component_mul(&units));
     let vertices = list(&file["vertices"]).ok_or("has no list \"vertices\"")?;
     let vertices: Vec<Point3<f64>> = (vertices.iter().enumerate())
         .map(|(i, v)| match numbers(v).as_deref() {
@@ -88,13 +90,33 @@ fn numbers(value: &Value) -> Option<Vec<f64>> {
     list(value)?.iter().map(finite).collect()
 }
 
+/// Metres in a unit of x, y and z: a report states metres whatever its model counts.
+fn units(metadata: &Value) -> Result<Vector3<f64>, String> {
+    let stated = metadata["referenceSystem"].as_str().and_then(units_of);
+    let Some(SystemUnits { plan, height }) = stated else {
+        return Ok(Vector3::repeat(1.0));
+    };
+    match plan {
+        PlanUnit::Length(plan) => {
+            let height = height.unwrap_or(plan);
+            Ok(Vector3::new(plan.metres, plan.metres, height.metres))
+        }
+        PlanUnit::Angle(_) => Err("is in longitude and latitude; convert it to a map".into()),
+        PlanUnit::Geocentric => Ok(Vector3::repeat(1.0)),
+    }
+}
+
 /// The coordinate system in words.
 fn system(metadata: &Value) -> Option<String> {
     if let Some(url) = metadata["referenceSystem"].as_str() {
         let code = url
             .rsplit_once("/EPSG/")
             .and_then(|(_, rest)| rest.rsplit_once('/'));
-        return Some(code.map_or_else(|| url.to_owned(), |(_, code)| format!("EPSG:{code}")));
+        let name = code.map_or_else(|| url.to_owned(), |(_, code)| format!("EPSG:{code}"));
+        return Some(match units(metadata) {
+            Ok(units) if units != Vector3::repeat(1.0) => format!("{name}, counted in metres"),
+            _ => name,
+        });
     }
     let title = metadata["title"].as_str()?;
     title.strip_prefix("Roofs; coordinates ").map(str::to_owned)

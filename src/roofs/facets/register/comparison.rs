@@ -145,15 +145,8 @@ impl RegisterEvidence<'_> {
         areas: &[f64],
     ) -> Option<FootprintFinding> {
         let around = self.around(footprint);
-        let moved = nalgebra::Vector2::from(self.moved.map(|n| n as f64 * self.grid.step));
-        let place = |k: usize| self.grid.center(k % self.grid.width, k / self.grid.width);
-        let inside: Vec<usize> = (around.iter().copied())
-            .filter(|&k| footprint.outline.contains(&(place(k) - moved)))
-            .collect();
+        let inside = self.shown_inside(footprint)?;
         let sample_m2 = self.grid.step * self.grid.step;
-        if (inside.len() as f64) * sample_m2 < SHOWN * footprint.outline.signed_area() {
-            return None;
-        }
         let count = |of: &dyn Fn(usize) -> bool| inside.iter().filter(|k| of(**k)).count() as f64;
         let roofed = count(&|k| roofs[k]) / larger(inside.len() as f64, 1.0);
         let for_ground: f64 = (inside.iter())
@@ -183,6 +176,18 @@ impl RegisterEvidence<'_> {
             roofed,
             shift_m,
         })
+    }
+
+    /// The samples inside a footprint as it is moved; `None` where the window shows too little of
+    /// it to say anything.
+    pub(super) fn shown_inside(&self, footprint: &Footprint) -> Option<Vec<usize>> {
+        let moved = nalgebra::Vector2::from(self.moved.map(|n| n as f64 * self.grid.step));
+        let place = |k: usize| self.grid.center(k % self.grid.width, k / self.grid.width);
+        let inside: Vec<usize> = (self.around(footprint).into_iter())
+            .filter(|&k| footprint.outline.contains(&(place(k) - moved)))
+            .collect();
+        let shown_m2 = inside.len() as f64 * self.grid.step * self.grid.step;
+        (shown_m2 >= SHOWN * footprint.outline.signed_area()).then_some(inside)
     }
 
     /// The samples of a footprint as it is moved and around it.

@@ -2,7 +2,8 @@
 //!
 //! `transform_matrix` is `world_from_cam` with y up and z backwards (OpenGL); `applied_transform`
 //! rotated the world before, and `applied_scale` multiplied the positions then: both are undone.
-//! Intrinsics are stated once or per frame.
+//! Intrinsics are stated once or per frame; NeRF's and Blender's form states one angle alone and
+//! leaves the size to the images.
 
 use nalgebra::{Matrix3, Matrix4, Point3, Vector3};
 use serde::Deserialize;
@@ -13,8 +14,13 @@ use crate::orienting::orientation::formats::left_out::LeftOut;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 use crate::photographs::camera::{Distortion, Projection};
 
-/// Reads nerfstudio's `transforms.json`.
-pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result<Vec<Orientation>> {
+/// Reads nerfstudio's `transforms.json`; `size_of` gives the size of the image that a frame names.
+pub(crate) fn read(
+    path: &str,
+    text: &str,
+    size_of: &dyn Fn(&str) -> Option<[u32; 2]>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Orientation>> {
     let file: NerfstudioTransforms = parse(path, text)?;
     let undo = match &file.applied_transform {
         None => Matrix4::identity(),
@@ -29,7 +35,10 @@ pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result
     }
     let (mut found, mut left_out) = (Vec::new(), LeftOut::default());
     for frame in &file.frames {
-        let lens = frame.lens.or(&file.lens);
+        let mut lens = frame.lens.or(&file.lens);
+        if let (None, Some([w, h])) = (lens.w.or(lens.fl_x), size_of(&frame.file_path)) {
+            (lens.w, lens.h) = (Some(f64::from(w)), Some(f64::from(h)));
+        }
         let k = match lens.k(path, &frame.file_path) {
             Ok(k) => k,
             Err(reason) => {
@@ -148,7 +157,9 @@ impl NerfstudioCamera {
         let middle = |c: Option<f64>, size: Option<f64>| c.or(size.map(|s| s / 2.0));
         let (Some(fx), Some(cx), Some(cy)) = (fx, middle(self.cx, self.w), middle(self.cy, self.h))
         else {
-            let problem = format!("{image} lacks fl_x, cx, cy, or w and h");
+            let problem = format!(
+                "{image} lacks fl_x, cx, cy, or w and h (camera_angle_x alone is enough where the image is among the files)"
+            );
             return Err(refuse(path, &problem));
         };
         let fy = self.fl_y.or_else(of_angle_y).unwrap_or(fx);
@@ -216,7 +227,8 @@ mod tests {
             "\"is_fisheye\": true",
             "\"camera_model\": \"OPENCV\", \"is_fisheye\": true",
         ] {
-            let found = &read("transforms.json", &file(model), &mut Vec::new()).unwrap()[0];
+            let found =
+                &read("transforms.json", &file(model), &|_| None, &mut Vec::new()).unwrap()[0];
             for (x, y) in [(0.3, -0.2), (1.2, 0.9), (-1.6, 0.4)] {
                 let r = math::hypot(x, y);
                 let theta = math::atan(r);
@@ -232,7 +244,7 @@ mod tests {
             "\"camera_model\": \"ORTHOPHOTO\"",
             "\"camera_model\": \"OPENCV_FISHEYE\", \"p1\": 0.1",
         ] {
-            assert!(read("transforms.json", &file(model), &mut Vec::new()).is_err());
+            assert!(read("transforms.json", &file(model), &|_| None, &mut Vec::new()).is_err());
         }
     }
 }

@@ -34,6 +34,7 @@ pub(crate) mod tags {
     pub(crate) const MODEL_TIEPOINT: u16 = 33922;
     pub(crate) const MODEL_TRANSFORMATION: u16 = 34264;
     pub(crate) const GEO_KEY_DIRECTORY: u16 = 34735;
+    pub(crate) const GDAL_METADATA: u16 = 42112;
     pub(crate) const GDAL_NO_DATA: u16 = 42113;
     pub(crate) const DNG_VERSION: u16 = 50706;
 }
