@@ -300,8 +300,14 @@ fn what_is_no_image_is_refused() {
 #[test]
 fn duplicate_names_are_refused() {
     let scene = Scene::new();
-    scene.write("more/s1_02.png", &scene.read("images/s1_02.png"));
-    scene.is_refused(&[], &["images/s1_02.png", "more/s1_02.png", "same name"]);
+    let image = scene.read("images/s1_02.png");
+    scene.write("again/s1_02.png", &image);
+    scene.write("more/s1_02.png", &image);
+    // What lies in `images` is taken.
+    assert!(scene.run(&[]).status.success());
+    fs::remove_dir_all(scene.out()).unwrap();
+    fs::remove_file(scene.0.path().join("scene/images/s1_02.png")).unwrap();
+    scene.is_refused(&[], &["again/s1_02.png", "more/s1_02.png", "same name"]);
 }
 
 #[test]

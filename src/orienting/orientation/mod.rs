@@ -54,7 +54,6 @@ mod path_name;
 mod photograph_head;
 mod reference;
 mod sets;
-mod transverse_mercator;
 mod units;
 mod unread;
 mod well_known;
@@ -66,7 +65,7 @@ pub use angles::{
 };
 pub use detect::{FileKind, detect};
 pub(crate) use detect::{GCP_LIST, GEO_LIST, POINT_CLOUD};
-pub(crate) use epsg::{is_geographic, plane_of};
+pub(crate) use epsg::{TransverseMercator, is_geographic, plane_of};
 pub use format::Format;
 pub use geodesy::Anchor;
 pub(crate) use geodesy::{A_M, geocentric_of};
@@ -79,7 +78,6 @@ pub(crate) use path_name::{NameEnding, NameFit, PathName, images_called};
 pub use photograph_head::PhotographHead;
 pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};
-pub(crate) use transverse_mercator::TransverseMercator;
 pub use units::{
     LinearUnit, PlanUnit, SystemUnits, height_unit_of_code, linear_unit_of_code, units_of,
     units_of_code,

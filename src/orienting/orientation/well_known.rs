@@ -2,7 +2,7 @@
 //! 19162, also ESRI's, which has no codes) and PROJ's strings.
 
 use super::epsg;
-use super::transverse_mercator::TransverseMercator;
+use super::epsg::TransverseMercator;
 
 /// What stands before brackets, with the texts and numbers directly in them.
 struct Node<'a> {

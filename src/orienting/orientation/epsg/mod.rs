@@ -7,8 +7,10 @@
 
 mod grids;
 mod planes;
+mod transverse_mercator;
 
-use super::transverse_mercator::TransverseMercator;
+pub(crate) use transverse_mercator::TransverseMercator;
+
 use grids::{GRIDS, Grids};
 use planes::{SAME, Same};
 

@@ -330,14 +330,14 @@ impl Plan {
                 _ if set.files.iter().any(|&i| belongs_to(file, &files[i])) => {
                     own.push((&file.path, code));
                 }
-                Some(other) => of_others.push(format!("{} to {}", file.path, other.path)),
+                Some(other) => of_others.push(format!("{} with {}", file.path, other.path)),
                 None => free.push((&file.path, code)),
             }
         }
         if own.is_empty() && free.is_empty() && !of_others.is_empty() {
             self.warnings.push(format!(
-                "no system is stated of the orientation (--crs EPSG:N states it): by its name {} \
-                 belongs",
+                "no system is stated of the orientation (--crs EPSG:N states it); files of systems \
+                 go by their names with others: {}",
                 listed(of_others.iter())
             ));
         }

@@ -73,7 +73,7 @@ mod tests {
         assert_eq!(of("WGS84 UTM 7S"), Some((Some(32707), false)));
         let proj = "+proj=utm +zone=10 +ellps=WGS84 +datum=WGS84 +units=m +no_defs";
         assert_eq!(of(proj), Some((Some(32610), false)));
-        assert_eq!(of("+proj=longlat +datum=WGS84"), Some((None, true)));
+        assert_eq!(of("+proj=longlat +datum=WGS84"), Some((Some(4326), true)));
         assert_eq!(of("epsg:4326"), Some((Some(4326), true)));
         assert_eq!(of("+proj=tmerc +lat_0=0 +lon_0=9"), Some((None, false)));
         assert_eq!(of("+proj=lcc +units=us-ft"), Some((None, false)));

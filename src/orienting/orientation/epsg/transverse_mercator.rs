@@ -9,8 +9,8 @@
 //! phi = chi + sum_j delta_j sin 2j chi
 //! ```
 
-use super::geodesy::A_M;
 use crate::base::math::{asin, asinh, atan2, cos, cosh, ln, sin, sinh};
+use crate::orienting::orientation::A_M;
 
 /// Third flattening of WGS84; that of GRS80 differs by 8e-12: 0.1 mm in latitude.
 const N: f64 = 1.679_220_386_383_705e-3;
@@ -18,18 +18,18 @@ const N: f64 = 1.679_220_386_383_705e-3;
 /// A transverse Mercator projection of the ellipsoid of WGS84.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TransverseMercator {
-    pub(super) central_meridian_deg: f64,
+    pub(in super::super) central_meridian_deg: f64,
     /// Scale on the central meridian.
-    pub(super) scale: f64,
+    pub(in super::super) scale: f64,
     /// Easting of the central meridian, metres.
-    pub(super) false_easting_m: f64,
+    pub(in super::super) false_easting_m: f64,
     /// Northing of the equator, metres.
-    pub(super) equator_m: f64,
+    pub(in super::super) equator_m: f64,
 }
 
 impl TransverseMercator {
     /// One whose northing at this latitude of origin is stated, as definitions in words do.
-    pub(super) fn with_origin(self, lat_deg: f64, northing_m: f64) -> Self {
+    pub(in super::super) fn with_origin(self, lat_deg: f64, northing_m: f64) -> Self {
         let at = Self {
             equator_m: 0.0,
             ..self
@@ -42,7 +42,7 @@ impl TransverseMercator {
     }
 
     /// Do both give the same coordinates within some centimetres?
-    pub(super) fn is_near(&self, other: &Self) -> bool {
+    pub(in super::super) fn is_near(&self, other: &Self) -> bool {
         // Files round the parameters; 1e-7 degrees are a centimetre, as 1e-8 of scale over 1000 km.
         (self.central_meridian_deg - other.central_meridian_deg).abs() < 1e-7
             && (self.scale - other.scale).abs() < 1e-8
