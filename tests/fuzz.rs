@@ -23,6 +23,7 @@ use ridgeline::orienting::orientation::{detect, orientation_sets};
 use ridgeline::orienting::scene_loader::{
     LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
 };
+use ridgeline::orienting::structure_from_motion::{GeoList, GroundControl};
 use ridgeline::photographs::raster::{image_header, load_image, load_window};
 
 /// Longest time that one input may take: machines may be busy, but nothing hangs.
@@ -406,6 +407,23 @@ fn read_known(files: &[InputFile]) {
         }
         check(register.map(|_| ()));
     }
+}
+
+/// Reads lists of control points, and of the places of photographs.
+fn read_control(files: &[InputFile]) {
+    for file in files {
+        let head = file.head();
+        let text = String::from_utf8_lossy(&head);
+        check(GroundControl::read(&file.path, &text).map(|_| ()));
+        check(GeoList::read(&file.path, &text).map(|_| ()));
+    }
+}
+
+#[test]
+fn lists_of_control_and_places_survive_anything() {
+    let seeds: Vec<Vec<InputFile>> = files_of("control").into_iter().map(|f| vec![f]).collect();
+    assert_eq!(seeds.len(), 2);
+    fuzz("control", &seeds, read_control);
 }
 
 #[test]

@@ -2,8 +2,6 @@
 
 use std::cmp::Reverse;
 
-use unicode_normalization::UnicodeNormalization;
-
 use super::input_file::stem;
 
 /// Extensions of photographs: what ends in one of them is the whole name of a file.
@@ -47,9 +45,18 @@ pub(crate) enum Extension {
     Other,
 }
 
+/// Unicode's composed form (NFC). A browser has the tables, which would be a tenth of the module
+/// that orients.
+fn composed(text: &str) -> String {
+    #[cfg(target_arch = "wasm32")]
+    return js_sys::JsString::from(text).normalize("NFC").into();
+    #[cfg(not(target_arch = "wasm32"))]
+    unicode_normalization::UnicodeNormalization::nfc(text).collect()
+}
+
 impl PathName {
     pub(crate) fn new(path: &str) -> Self {
-        let composed: String = path.nfc().collect();
+        let composed = composed(path);
         let mut parts = composed
             .split(['/', '\\'])
             .filter(|part| !["", ".", ".."].contains(part));

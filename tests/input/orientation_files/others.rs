@@ -212,7 +212,7 @@ fn what_nerfstudio_applied_is_undone() {
     let frames: Vec<String> = (names.iter())
         .map(|name| format!("{{\"file_path\": \"./{name}\", \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,9]]}}"))
         .collect();
-    let angle = 2.0 * 0.5f64.atan();
+    let angle = 2.0 * libm::atan(0.5);
     let text = format!(
         "{{\"camera_angle_x\": {angle}, \"frames\": [{}]}}",
         frames.join(",")

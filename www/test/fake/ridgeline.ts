@@ -485,6 +485,10 @@ export class Session implements CoreSession {
     };
   }
 
+  uncovered() {
+    return [];
+  }
+
   grouping(): GroupingTrace {
     const members = (lines: number[]) => lines.map((line) => ({ line, side: null, half_plane: null }));
     return {

@@ -308,7 +308,8 @@ fn positions_without_heights_count_in_plan() {
 
 #[test]
 fn positions_that_give_nothing_are_said_to() {
-    let all: [(fn(usize, &mut StatedPose), &str); 3] = [
+    type Change = fn(usize, &mut StatedPose);
+    let all: [(Change, &str); 3] = [
         (
             |_, one| one.position = Some(Point3::new(1.0, 2.0, 3.0)),
             "all 9 positions state one place",

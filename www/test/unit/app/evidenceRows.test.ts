@@ -121,7 +121,12 @@ it("a rejected facet says in short why, and in bars all that was weighed", () =>
 it("a roof that was seen and has no facet says why, and how likely it is", () => {
   const seen = { outline: [], area_m2: 24.04, probability: 0.62 };
   const why = { rejected: { facet: 3, evidence: AGAINST } };
-  show({ uncovered: [{ ...seen, why }, { ...seen, why: "no_plane" }] });
+  show({
+    uncovered: [
+      { ...seen, why },
+      { ...seen, why: "no_plane" },
+    ],
+  });
   const rowsOfRoof = (index: number) => rowsOf({ kind: "uncoveredRoof", index }, about(results.value));
   expect(valueIn(rowsOfRoof(0), "No facet, because")).toBe("rejected facet 3 is improbable");
   expect((valueIn(rowsOfRoof(0), "For and against it (nats)") as Bars).bars).toHaveLength(4);
