@@ -119,7 +119,7 @@ fn a_surface_model_is_no_terrain() {
         let ground = truth.ground_z + 1e-3 * x;
         inside.map_or(ground, |(plane, _)| plane.z_at(x, y))
     };
-    let found = run(loaded(&scene, Some(("dsm.asc", grid(surface)))));
+    let found = run(loaded(&scene, Some(("heights.asc", grid(surface)))));
     assert_eq!(comparison(&found).verdict, KnownVerdict::Contradicted);
     house_is(&found, |_, _| truth.ground_z);
 }
