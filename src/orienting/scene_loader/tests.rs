@@ -141,7 +141,6 @@ fn names_that_are_not_unique() {
     let named = "more/S1_02.tif (images/s1_02.png was taken)";
     assert!(scene.warnings[0].ends_with(named), "{:?}", scene.warnings);
     files.push(InputFile::new("again\\s1_02.png", copy));
-    // In a folder `images` the photograph would be taken.
     find(&mut files, "images/s1_02.png").path = "first/s1_02.png".to_owned();
     refused(
         &files,
