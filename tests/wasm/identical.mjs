@@ -221,10 +221,12 @@ async function runWasm(scene, method, corrections = []) {
     const { session } = await openSession();
     addFiles(session, scene);
     session.setParams({ method, corrections });
-    // Where the command line puts it.
+    // Where the command line puts it, beside the one that it finds in the folder.
     const cloud = cloudOf(scene);
     const known = cloud === undefined ? {} : { pointCloud: `known/${cloud}` };
-    if (cloud !== undefined) session.addFile(known.pointCloud, readFileSync(join(scene, cloud)));
+    for (const path of cloud === undefined ? [] : [cloud, known.pointCloud]) {
+        session.addFile(path, readFileSync(join(scene, cloud)));
+    }
     session.load(known);
     for (const stage of session.chosenStages()) {
         const start = performance.now();
