@@ -173,8 +173,9 @@ pub(super) fn add_known(files: &mut Vec<InputFile>, path: &Path) -> Result<Strin
         .iter()
         .find_map(|path| Some(known(path, fs::read(path).ok()?)));
     for file in [Some(file), beside].into_iter().flatten() {
-        // That of a project opened again takes the place of the one that it held.
-        files.retain(|other| other.path != file.path);
+        // It takes the place of the one that a project held, and of itself among the scene's files.
+        let is_it = |other: &InputFile| other.name() == file.name() && other.bytes == file.bytes;
+        files.retain(|other| other.path != file.path && !is_it(other));
         files.push(file);
     }
     files.sort_by(|a, b| a.path.cmp(&b.path));
@@ -310,6 +311,26 @@ mod tests {
         let mut files = vec![InputFile::new("a.laz", Vec::new())];
         let none = leave_out(&mut files, &["*.las".to_owned()]);
         assert!(none.unwrap_err().to_string().contains("names none"));
+    }
+
+    #[test]
+    fn a_file_that_an_option_names_counts_once_though_it_lies_in_the_scene() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("dtm.tif");
+        fs::write(&path, b"heights").unwrap();
+        let mut files = [
+            ("a/dtm.tif", "heights"),
+            ("b/dtm.tif", "others"),
+            ("c.tif", "heights"),
+        ]
+        .map(|(path, text)| InputFile::new(path, text.into()))
+        .to_vec();
+        let Ok(own) = add_known(&mut files, &path) else {
+            panic!("it is there")
+        };
+        let paths: Vec<&str> = files.iter().map(|file| &*file.path).collect();
+        assert_eq!(own, "known/dtm.tif");
+        assert_eq!(paths, ["b/dtm.tif", "c.tif", "known/dtm.tif"]);
     }
 
     #[test]

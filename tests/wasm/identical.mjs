@@ -137,8 +137,8 @@ async function compareRuns(scene, method, corrections) {
     const report = JSON.parse(native.get("report.json").toString());
     if (cloudOf(scene) !== undefined && ["lines", "combined"].includes(method)) {
         // Otherwise nothing of it would have been compared.
-        const { verdict, planes } = report.known?.point_cloud ?? {};
-        console.log(`${basename(scene)}: the point cloud is ${verdict}, with ${planes?.length ?? 0} planes`);
+        const { compared, planes } = report.known?.point_cloud ?? {};
+        console.log(`${basename(scene)}: the point cloud is ${compared?.verdict}, with ${planes?.length ?? 0} planes`);
         if (!(planes?.length > 0)) bad.push("point cloud");
     }
     return { bad, report };
@@ -221,12 +221,10 @@ async function runWasm(scene, method, corrections = []) {
     const { session } = await openSession();
     addFiles(session, scene);
     session.setParams({ method, corrections });
-    // Where the command line puts it, beside the one that it finds in the folder.
+    // Where the command line puts it.
     const cloud = cloudOf(scene);
     const known = cloud === undefined ? {} : { pointCloud: `known/${cloud}` };
-    for (const path of cloud === undefined ? [] : [cloud, known.pointCloud]) {
-        session.addFile(path, readFileSync(join(scene, cloud)));
-    }
+    if (cloud !== undefined) session.addFile(known.pointCloud, readFileSync(join(scene, cloud)));
     session.load(known);
     for (const stage of session.chosenStages()) {
         const start = performance.now();
