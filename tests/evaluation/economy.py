@@ -5,8 +5,8 @@
     python3 tests/evaluation/economy.py --rewrite   writes the counts into economy.json
     python3 tests/evaluation/economy.py --list KEY  the places of one count, one a line
 
-"Rust" below is src/**/*.rs without tables that a script wrote, with comments, strings and tests taken out. A test is an item below
-`#[cfg(test)]` and what it holds, and a file or folder whose `mod` stands below that attribute or that is called
+"Rust" below is src/**/*.rs with comments, strings and tests taken out, without tables that a script wrote. A test
+is an item below `#[cfg(test)]` and what it holds, and a file or folder whose `mod` stands below that attribute or that is called
 tests, testing or *_tests. Lines are those of rustfmt and Biome. Counts are taken line by line, so that anyone
 can repeat them with grep; none of them understands the program.
 """

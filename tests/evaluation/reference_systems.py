@@ -128,28 +128,43 @@ def grid_rows():
     return rows
 
 
-HEAD = "//! Written by tests/evaluation/reference_systems.py from EPSG's registry: do not edit.\n"
-with (OUT / "planes.rs").open("w") as out:
-    rows = same_rows()
-    print(HEAD, file=out)
-    print("/// So many codes from the first on stand for the same plane as the codes from the third on,", file=out)
-    print("/// by steps of the fourth (0 or 1).", file=out)
-    print("pub(super) struct Same(pub u16, pub u16, pub u16, pub u16);\n", file=out)
-    print("/// Codes of the same plane, sorted.", file=out)
-    print(f"#[rustfmt::skip]\npub(super) static SAME: [Same; {len(rows)}] = [", file=out)
-    for i in range(0, len(rows), 4):
-        print("    " + " ".join(f"Same({a}, {n}, {b}, {s})," for a, n, b, s in rows[i : i + 4]), file=out)
-    print("];", file=out)
-with (OUT / "grids.rs").open("w") as out:
-    rows = grid_rows()
-    print(HEAD, file=out)
-    print("/// So many codes from the first on: central meridian, scale, easting of it and northing of the", file=out)
-    print("/// equator (degrees, metres) of the first, and by how much meridian and easting grow from code", file=out)
-    print("/// to code.", file=out)
-    print("pub(super) struct Grids(pub u16, pub u16, pub [f64; 4], pub [i32; 2]);\n", file=out)
-    print("/// Transverse Mercator projections of the datums that count as WGS84, sorted.", file=out)
-    print(f"#[rustfmt::skip]\npub(super) static GRIDS: [Grids; {len(rows)}] = [", file=out)
-    for first, count, of_first, steps in rows:
-        values = [float(v) for v in of_first]
-        print(f"    Grids({first}, {count}, {values}, {[int(s) for s in steps]}),", file=out)
-    print("];", file=out)
+def write(name, of_row, row, of_table, table, lines, count):
+    """A module with the type of a row and the table, a documentation comment each."""
+    text = f"""//! Written by tests/evaluation/reference_systems.py from EPSG's registry: do not edit.
+
+{of_row}
+pub(super) struct {row};
+
+{of_table}
+#[rustfmt::skip]
+pub(super) static {table}: [{row.split("(")[0]}; {count}] = [
+{lines}
+];
+"""
+    (OUT / name).write_text(text)
+
+
+rows = same_rows()
+cells = [f"Same({a}, {n}, {b}, {s})," for a, n, b, s in rows]
+write(
+    "planes.rs",
+    "/// So many codes from the first on stand for the same plane as the codes from the third on,\n"
+    "/// by steps of the fourth (0 or 1).",
+    "Same(pub u16, pub u16, pub u16, pub u16)",
+    "/// Codes of the same plane, sorted.",
+    "SAME",
+    "\n".join("    " + " ".join(cells[i : i + 4]) for i in range(0, len(cells), 4)),
+    len(rows),
+)
+rows = grid_rows()
+write(
+    "grids.rs",
+    "/// So many codes from the first on: central meridian, scale, easting of it and northing of the\n"
+    "/// equator (degrees, metres) of the first, and by how much meridian and easting grow from code\n"
+    "/// to code.",
+    "Grids(pub u16, pub u16, pub [f64; 4], pub [i32; 2])",
+    "/// Transverse Mercator projections of the datums that count as WGS84, sorted.",
+    "GRIDS",
+    "\n".join(f"    Grids({a}, {n}, {[float(v) for v in first]}, {[int(s) for s in steps]})," for a, n, first, steps in rows),
+    len(rows),
+)

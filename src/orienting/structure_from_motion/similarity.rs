@@ -15,6 +15,12 @@ pub(super) struct Similarity {
     pub shift: Vector3<f64>,
 }
 
+/// The weighted mean of points.
+fn middle(points: &[Point3<f64>], weights: &[f64]) -> Vector3<f64> {
+    let weighted = points.iter().zip(weights).map(|(p, w)| p.coords * *w);
+    weighted.fold(Vector3::zeros(), |a, b| a + b) / weights.iter().sum::<f64>()
+}
+
 impl Similarity {
     /// The similarity of least weighted squares from points to others (Horn 1987; Umeyama 1991);
     /// `None` where the points do not differ. Points on a line leave the turn about it open.
@@ -23,19 +29,15 @@ impl Similarity {
         to: &[Point3<f64>],
         weights: &[f64],
     ) -> Option<Self> {
-        let total: f64 = weights.iter().sum();
-        let mean = |points: &[Point3<f64>]| {
-            let weighted = points.iter().zip(weights).map(|(p, w)| p.coords * *w);
-            Point3::from(weighted.fold(Vector3::zeros(), |a, b| a + b) / total)
-        };
-        let (middle_from, middle_to) = (mean(from), mean(to));
+        let (middle_from, middle_to) = (middle(from, weights), middle(to, weights));
         let (mut correlation, mut square) = (Matrix3::zeros(), 0.0);
         for ((a, b), w) in from.iter().zip(to).zip(weights) {
-            let (a, b) = (a - middle_from, b - middle_to);
+            let (a, b) = (a.coords - middle_from, b.coords - middle_to);
             correlation += a * b.transpose() * *w;
             square += w * a.norm_squared();
         }
-        if !(square > 0.0 && total > 0.0) {
+        let is_spread = square > 0.0;
+        if !is_spread {
             return None;
         }
         let rotation = rotation_between(&correlation);
@@ -44,7 +46,7 @@ impl Similarity {
         (scale > 0.0 && scale.is_finite()).then(|| Self {
             scale,
             rotation,
-            shift: middle_to.coords - rotation * middle_from.coords * scale,
+            shift: middle_to - rotation * middle_from * scale,
         })
     }
 
@@ -55,12 +57,7 @@ impl Similarity {
         to: &[Point3<f64>],
         weights: &[f64],
     ) -> Option<Self> {
-        let total: f64 = weights.iter().sum();
-        let mean = |points: &[Point3<f64>]| {
-            let weighted = points.iter().zip(weights).map(|(p, w)| p.coords * *w);
-            weighted.fold(Vector3::zeros(), |a, b| a + b) / total
-        };
-        let (middle_from, middle_to) = (mean(from), mean(to));
+        let (middle_from, middle_to) = (middle(from, weights), middle(to, weights));
         let (mut along, mut across, mut square) = (0.0, 0.0, 0.0);
         for ((a, b), w) in from.iter().zip(to).zip(weights) {
             let (a, b) = (a.coords - middle_from, b.coords - middle_to);

@@ -10,8 +10,8 @@
 
 use nalgebra::{Point2, Point3, Vector3};
 
-use super::system::{StatedSystem, fields};
-use crate::base::error::{Error, Result};
+use super::system::{List, StatedSystem, fields, read_among};
+use crate::base::error::Result;
 use crate::orienting::orientation::{
     Anchor, GCP_LIST, InputFile, LinearUnit, PlanUnit, SystemUnits, TransverseMercator,
     geocentric_of,
@@ -65,10 +65,7 @@ impl GroundControl {
     /// # Errors
     /// Where it cannot be read; the message names the line.
     pub fn among(files: &[InputFile]) -> Result<Option<Self>> {
-        let found = files
-            .iter()
-            .find(|f| f.name().eq_ignore_ascii_case(Self::FILE));
-        found.map(|f| Self::read(&f.path, &f.text())).transpose()
+        read_among(files, Self::FILE, Self::read)
     }
 
     /// Reads a list; `file` is for messages.
@@ -76,26 +73,16 @@ impl GroundControl {
     /// # Errors
     /// Where a line does not follow the format, or a point has two places.
     pub fn read(file: &str, text: &str) -> Result<Self> {
-        let refused = |line: usize, problem: String, expected: &str| Error::Line {
-            file: file.to_owned(),
-            line: line + 1,
-            problem,
-            expected: expected.to_owned(),
-        };
-        let mut lines = (text.trim_start_matches('\u{feff}').lines().enumerate())
-            .map(|(i, line)| (i, line.trim()))
-            .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-        let (first, stated) = lines.next().unwrap_or((0, ""));
-        let system = StatedSystem::of(stated)
-            .ok_or_else(|| refused(first, format!("'{stated}'"), StatedSystem::EXPECTED))?;
+        let list = List::new(file, text)?;
+        let (system, (first, stated)) = (&list.system, list.first);
         let mut points: Vec<ControlPoint> = Vec::new();
-        for (i, line) in lines {
+        for &(i, line) in &list.lines {
             let fields = fields(line);
             let numbers: Vec<f64> = (fields.iter().take(5))
                 .map_while(|field| field.parse().ok().filter(|v: &f64| v.is_finite()))
                 .collect();
             let (&[x, y, z, u, v], Some(image)) = (&numbers[..], fields.get(5)) else {
-                return Err(refused(i, format!("'{line}'"), COLUMNS));
+                return Err(list.refused(i, format!("'{line}'"), COLUMNS));
             };
             let place = [x, y, z];
             let mark = ((*image).to_owned(), Point2::new(u, v));
@@ -107,7 +94,7 @@ impl GroundControl {
             match known {
                 Some(point) if point.stated != place => {
                     let problem = format!("point {} has other coordinates above", point.name);
-                    return Err(refused(i, problem, "one place for each name"));
+                    return Err(list.refused(i, problem, "one place for each name"));
                 }
                 Some(point) => point.marks.push(mark),
                 None => points.push(ControlPoint {
@@ -119,7 +106,7 @@ impl GroundControl {
             }
         }
         if let Some((problem, expected)) = no_degrees(&system.units, &points) {
-            return Err(refused(first, format!("'{stated}': {problem}"), expected));
+            return Err(list.refused(first, format!("'{stated}': {problem}"), expected));
         }
         let is_on_map = matches!(system.units.plan, PlanUnit::Length(_));
         let mut control = Self {

@@ -7,8 +7,8 @@
 //!
 //! Its pitch is 0 where the camera looks down and 90 where it looks ahead; accuracies are metres.
 
-use super::system::{StatedSystem, fields};
-use crate::base::error::{Error, Result};
+use super::system::{List, fields, read_among};
+use crate::base::error::Result;
 use crate::orienting::orientation::{
     GEO_LIST, InputFile, LinearUnit, PathName, PlanUnit, SystemUnits, TransverseMercator,
     images_called,
@@ -49,10 +49,7 @@ impl GeoList {
     /// # Errors
     /// Where it cannot be read; the message names the line.
     pub fn among(files: &[InputFile]) -> Result<Option<Self>> {
-        let found = files
-            .iter()
-            .find(|f| f.name().eq_ignore_ascii_case(Self::FILE));
-        found.map(|f| Self::read(&f.path, &f.text())).transpose()
+        read_among(files, Self::FILE, Self::read)
     }
 
     /// Reads a list; `file` is for messages.
@@ -60,18 +57,8 @@ impl GeoList {
     /// # Errors
     /// Where a line does not follow the format.
     pub fn read(file: &str, text: &str) -> Result<Self> {
-        let refused = |line: usize, problem: &str, expected: &str| Error::Line {
-            file: file.to_owned(),
-            line: line + 1,
-            problem: format!("'{problem}'"),
-            expected: expected.to_owned(),
-        };
-        let mut lines = (text.trim_start_matches('\u{feff}').lines().enumerate())
-            .map(|(i, line)| (i, line.trim()))
-            .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-        let (first, stated) = lines.next().unwrap_or((0, ""));
-        let system = StatedSystem::of(stated)
-            .ok_or_else(|| refused(first, stated, StatedSystem::EXPECTED))?;
+        let list = List::new(file, text)?;
+        let (system, stated) = (&list.system, list.first.1);
         let grid = system.epsg.and_then(TransverseMercator::of_epsg);
         if matches!(system.units.plan, PlanUnit::Length(_)) && grid.is_none() {
             return Ok(Self {
@@ -82,9 +69,9 @@ impl GeoList {
                 )),
             });
         }
-        let places = lines.map(|(i, line)| {
+        let places = list.lines.iter().map(|(i, line)| {
             let place = place_of(line, &system.units, grid);
-            place.ok_or_else(|| refused(i, line, COLUMNS))
+            place.ok_or_else(|| list.refused(*i, format!("'{line}'"), COLUMNS))
         });
         Ok(Self {
             places: places.collect::<Result<_>>()?,

@@ -1,6 +1,65 @@
-//! The reference system in the first line of OpenDroneMap's lists.
+//! What OpenDroneMap's lists have in common: a reference system in the first line, then a line for
+//! each thing.
 
-use crate::orienting::orientation::{LinearUnit, PlanUnit, SystemUnits, epsg_of, units_of};
+use crate::base::error::{Error, Result};
+use crate::orienting::orientation::{
+    InputFile, LinearUnit, PlanUnit, SystemUnits, epsg_of, units_of,
+};
+
+/// A list in its lines.
+pub(super) struct List<'t> {
+    file: &'t str,
+    /// The first line, and its place.
+    pub first: (usize, &'t str),
+    /// What that says.
+    pub system: StatedSystem,
+    /// The lines below it with their places; comments and empty ones are left out.
+    pub lines: Vec<(usize, &'t str)>,
+}
+
+impl<'t> List<'t> {
+    /// Reads the first line; `file` is for messages.
+    pub(super) fn new(file: &'t str, text: &'t str) -> Result<Self> {
+        let mut lines = (text.trim_start_matches('\u{feff}').lines().enumerate())
+            .map(|(i, line)| (i, line.trim()))
+            .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+        let first = lines.next().unwrap_or((0, ""));
+        let system = StatedSystem::of(first.1).ok_or_else(|| {
+            let problem = format!("'{}'", first.1);
+            refused(file, first.0, problem, StatedSystem::EXPECTED)
+        })?;
+        Ok(Self {
+            file,
+            first,
+            system,
+            lines: lines.collect(),
+        })
+    }
+
+    /// The refusal of a line.
+    pub(super) fn refused(&self, line: usize, problem: String, expected: &str) -> Error {
+        refused(self.file, line, problem, expected)
+    }
+}
+
+fn refused(file: &str, line: usize, problem: String, expected: &str) -> Error {
+    Error::Line {
+        file: file.to_owned(),
+        line: line + 1,
+        problem,
+        expected: expected.to_owned(),
+    }
+}
+
+/// The list of a name among files, read by its path and text, where there is one.
+pub(super) fn read_among<T>(
+    files: &[InputFile],
+    name: &str,
+    read: impl Fn(&str, &str) -> Result<T>,
+) -> Result<Option<T>> {
+    let found = files.iter().find(|f| f.name().eq_ignore_ascii_case(name));
+    found.map(|f| read(&f.path, &f.text())).transpose()
+}
 
 /// What the first line says.
 pub(in super::super) struct StatedSystem {
