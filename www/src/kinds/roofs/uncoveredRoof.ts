@@ -6,7 +6,7 @@ import { numbered } from "../parts/rows";
 import { areas } from "../parts/shapes";
 
 export default {
-  title: ({ index }) => `Roof without a facet ${index}`,
+  title: ({ index }) => `Place without a facet ${index}`,
   rows({ index }, { results: { uncovered } }) {
     const roof = uncovered?.[index];
     if (roof === undefined) {
@@ -15,7 +15,7 @@ export default {
     const { why, area_m2, probability } = roof;
     const rejected = why === "no_plane" ? null : why.rejected;
     return [
-      ["It is a roof", percentText(probability)],
+      ["Probability of a roof", percentText(probability)],
       [
         "No facet, because",
         rejected === null ? "no plane won the place" : `rejected facet ${rejected.facet} is improbable`,

@@ -118,7 +118,7 @@ it("a rejected facet says in short why, and in bars all that was weighed", () =>
   expect(bars.map(({ nats }) => nats)).toEqual([-1, -1.67, 0.9, -0.25]);
 });
 
-it("a roof that was seen and has no facet says why, and how likely it is", () => {
+it("a place that may be roof and has no facet says why, and how likely it is", () => {
   const seen = { outline: [], area_m2: 24.04, probability: 0.62 };
   const why = { rejected: { facet: 3, evidence: AGAINST } };
   show({
@@ -131,7 +131,7 @@ it("a roof that was seen and has no facet says why, and how likely it is", () =>
   expect(valueIn(rowsOfRoof(0), "No facet, because")).toBe("rejected facet 3 is improbable");
   expect((valueIn(rowsOfRoof(0), "For and against it (nats)") as Bars).bars).toHaveLength(4);
   expect(valueIn(rowsOfRoof(1), "No facet, because")).toBe("no plane won the place");
-  expect(valueIn(rowsOfRoof(1), "It is a roof")).toBe("62 %");
+  expect(valueIn(rowsOfRoof(1), "Probability of a roof")).toBe("62 %");
   expect(valueIn(rowsOfRoof(1), "Area in plan")).toBe("24.0 m²");
 });
 

@@ -16,7 +16,7 @@ export function Unmodelled() {
   };
   return (
     <button type="button" class="unmodelled" onClick={showNext}>
-      {counted(places, "roofs")} seen, but not in the model: show
+      {counted(places, "places")} may be roof, and not in the model: show
     </button>
   );
 }
