@@ -190,6 +190,14 @@ pub struct Plane {
 }
 
 impl Plane {
+    /// The level plane at a height, metres.
+    pub fn level(z: f64) -> Self {
+        Self {
+            normal: Vector3::z(),
+            d: -z,
+        }
+    }
+
     /// The plane through `point` with this normal (any length but zero); `None` for a zero normal.
     pub fn from_point_normal(point: &Point3<f64>, normal: &Vector3<f64>) -> Option<Self> {
         let normal = Unit::try_new(*normal, 1e-12)?.into_inner();

@@ -37,13 +37,6 @@ pub(super) fn is_within(sample: &Point3<f64>, at: &Point2<f64>, distance: f64) -
     (sample.xy() - at).norm_squared() <= distance * distance
 }
 
-pub(super) fn level_plane(z: f64) -> Plane {
-    Plane {
-        normal: Vector3::z(),
-        d: -z,
-    }
-}
-
 /// Planes through what is lowest around these places.
 pub(super) fn proposals(samples: &[Point3<f64>], places: &[Point2<f64>]) -> Vec<Plane> {
     let mut planes = Vec::new();
@@ -119,7 +112,7 @@ fn planes_through(blocks: &[Point3<f64>]) -> Vec<Plane> {
     let mut heights: Vec<f64> = blocks.iter().map(|p| p.z).collect();
     heights.sort_by(f64::total_cmp);
     let at_share = |i: usize| heights.get(i * heights.len() / STARTS);
-    let starts = (0..STARTS).filter_map(at_share).map(|z| level_plane(*z));
+    let starts = (0..STARTS).filter_map(at_share).map(|z| Plane::level(*z));
     let fits = starts.flat_map(|level| {
         let mut plane = level;
         for _ in 0..ROUNDS {
@@ -195,7 +188,7 @@ mod tests {
             .collect();
         let slope = most_shared_slope(&samples);
         assert!((slope - Vector2::new(0.2, -0.1)).norm() < 1e-9, "{slope}");
-        let steep = sloped(&level_plane(50.0), slope);
+        let steep = sloped(&Plane::level(50.0), slope);
         assert!((steep.z_at(10.0, 20.0) - 50.0).abs() < 1e-9);
     }
 }

@@ -14,7 +14,7 @@ mod given;
 mod surface;
 mod sweep;
 
-use common_plane::{MIN_SAMPLES, STANDS_OUT, is_within, level_plane};
+use common_plane::{MIN_SAMPLES, STANDS_OUT, is_within};
 use nalgebra::{Point2, Point3, Vector2};
 use serde::{Deserialize, Serialize};
 use surface::ROUGHNESS;
@@ -55,7 +55,7 @@ impl Ground {
             columns: 0,
             rows: 0,
             rises: Vec::new(),
-            plane: level_plane(z),
+            plane: Plane::level(z),
             terrain: None,
         }
     }
@@ -126,7 +126,7 @@ impl Ground {
             columns,
             rows,
             rises: vec![0.0; columns * rows],
-            plane: level_plane(elsewhere),
+            plane: Plane::level(elsewhere),
             terrain: None,
         };
         let places: Vec<Point2<f64>> = (0..columns * rows).map(|k| ground.middle(k)).collect();

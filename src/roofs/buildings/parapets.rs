@@ -169,14 +169,6 @@ mod tests {
     use super::*;
     use crate::planes::rendered_planes::{level_ground, scene, textured};
     use crate::roofs::testing;
-    use nalgebra::Vector3;
-
-    fn level(z: f64) -> Plane {
-        Plane {
-            normal: Vector3::z(),
-            d: -z,
-        }
-    }
 
     /// A facet of 10 m by 8 m at a height.
     fn facet(z: f64) -> Facet {
@@ -191,9 +183,9 @@ mod tests {
         let parapet =
             |x: f64, y: f64| x.abs() < 5.0 && y.abs() < 4.0 && !(x.abs() < 4.7 && y.abs() < 3.7);
         let rimmed = scene(&[
-            textured(level(5.8), machines),
-            textured(level(5.0), roof),
-            textured(level(5.4), parapet),
+            textured(Plane::level(5.8), machines),
+            textured(Plane::level(5.0), roof),
+            textured(Plane::level(5.4), parapet),
             level_ground(),
         ]);
         let (facets, parapets) = below_parapets(&rimmed, &[facet(5.4)]);

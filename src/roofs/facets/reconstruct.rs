@@ -340,19 +340,12 @@ mod tests {
 
     const ROOF_Z: f64 = 5.0;
 
-    fn level(z: f64) -> Plane {
-        Plane {
-            normal: Vector3::z(),
-            d: -z,
-        }
-    }
-
     /// A rectangle of 8 m by 6 m around the origin, at a height.
     fn rectangle(index: u32, z: f64) -> ProposedPlane {
         let corners = [(-4.0, -3.0), (4.0, -3.0), (4.0, 3.0), (-4.0, 3.0)];
         ProposedPlane {
             origin: ProposalOrigin::Rectangle(index),
-            plane: level(z),
+            plane: Plane::level(z),
             ring: corners.map(|(x, y)| Point3::new(x, y, z)).to_vec(),
             sides_on_edges: true,
         }
@@ -368,8 +361,8 @@ mod tests {
             texture: 0.3,
         };
         let scene = scene(&[
-            textured(level(ROOF_Z), on_roof),
-            textured(level(0.0), |_, _| true),
+            textured(Plane::level(ROOF_Z), on_roof),
+            textured(Plane::level(0.0), |_, _| true),
         ]);
         let eave = line(
             Point3::new(-4.0, -3.0, ROOF_Z),

@@ -105,7 +105,7 @@ mod tests {
     use crate::base::labelling::NO_PLANE;
     use crate::roofs::facets::borders::{Arrangement, Border, BorderKind, LineIndex};
     use crate::roofs::facets::delineation::delineate;
-    use nalgebra::{Point2, Vector2, Vector3};
+    use nalgebra::{Point2, Vector2};
 
     fn frame([x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) -> impl Iterator<Item = Border> {
         let c = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
@@ -114,13 +114,6 @@ mod tests {
             a: c[i].into(),
             b: c[(i + 1) % 4].into(),
         })
-    }
-
-    fn level(z: f64) -> Plane {
-        Plane {
-            normal: Vector3::z(),
-            d: -z,
-        }
     }
 
     /// The outlines of a roof of 10 m by 6 m, with rectangles of it that have another label, and of
@@ -156,7 +149,7 @@ mod tests {
             }
         };
         let labels: Vec<u32> = (0..arrangement.cells).map(label).collect();
-        let planes = [level(5.0), level(8.0)];
+        let planes = [Plane::level(5.0), Plane::level(8.0)];
         let cost = |cell: usize, plane: u32| {
             let per_m2 = match (labels[cell], plane) {
                 (own, plane) if own == plane => -3.0,

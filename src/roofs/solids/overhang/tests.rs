@@ -24,13 +24,6 @@ fn walled(facets: &[Facet], depth: impl Fn(&Side) -> f64, ground: &Plane) -> Opt
     Some(model)
 }
 
-fn level(z: f64) -> Plane {
-    Plane {
-        normal: nalgebra::Vector3::z(),
-        d: -z,
-    }
-}
-
 fn count(model: &RoofModel, surface: Surface) -> usize {
     let faces = model.buildings[0].solid.faces.iter();
     faces.filter(|f| f.surface == surface).count()
@@ -39,7 +32,7 @@ fn count(model: &RoofModel, surface: Surface) -> usize {
 #[test]
 fn a_gable_house_has_its_walls_inside_the_eaves() {
     let depth = |side: &Side| if side.is_level() { 0.6 } else { 0.3 };
-    let model = walled(&gable(), depth, &level(0.0)).unwrap();
+    let model = walled(&gable(), depth, &Plane::level(0.0)).unwrap();
     assert_eq!(check_invariants(&model), []);
     // 12 m by 8 m below 9 m - 0.75 |y|; walls around 11.4 m by 6.8 m.
     let inside = 11.4 * 2.0 * (9.0 * 3.4 - 0.375 * 3.4 * 3.4);
@@ -53,7 +46,7 @@ fn a_gable_house_has_its_walls_inside_the_eaves() {
 
 #[test]
 fn without_overhang_it_is_the_solid_as_it_was() {
-    let model = walled(&gable(), |_| 0.0, &level(0.0)).unwrap();
+    let model = walled(&gable(), |_| 0.0, &Plane::level(0.0)).unwrap();
     let (plain, _) = close_buildings(&gable(), |_| 0.0);
     let volumes = [&model, &plain].map(|m| m.buildings[0].solid.volume());
     assert!((volumes[0] - volumes[1]).abs() < 1e-9);
@@ -77,7 +70,7 @@ fn feet_follow_sloping_ground() {
     let inside = 11.0 * 2.0 * (8.0 * 3.5 - 0.375 * 3.5 * 3.5);
     let rim = (12.0 * 8.0 - 11.0 * 7.0) * RIM_M;
     assert!((solid.volume() - inside - rim).abs() < 1e-6);
-    let above_the_eave = level(6.5);
+    let above_the_eave = Plane::level(6.5);
     assert!(walled(&gable(), |_| 0.5, &above_the_eave).is_none());
 }
 
@@ -91,7 +84,7 @@ fn a_lower_wing_and_its_inner_corner() {
         rectangle([0.0, 0.0, 10.0, 6.0], 6.0),
         rectangle([6.0, 6.0, 10.0, 11.0], 4.0),
     ];
-    let model = walled(&facets, |_| 0.5, &level(0.0)).unwrap();
+    let model = walled(&facets, |_| 0.5, &Plane::level(0.0)).unwrap();
     assert_eq!(check_invariants(&model), []);
     // The inner corner moves to (6.5, 5.5).
     let high = 9.0 * 5.0 + 3.0 * 0.5;
@@ -134,7 +127,7 @@ fn a_corner_beside_a_hip_is_put_onto_it() {
                 0.0
             }
         };
-        let model = walled(&hip, depth, &level(0.0)).unwrap();
+        let model = walled(&hip, depth, &Plane::level(0.0)).unwrap();
         assert_eq!(check_invariants(&model), []);
         let solid = &model.buildings[0].solid;
         let corners = || solid.vertices.iter().enumerate();
@@ -162,7 +155,7 @@ fn a_strip_beside_the_footprint_carries_no_roof() {
         [0.0, 8.0],
     ];
     let roof = [facet(&corners.map(|[x, y]| at(x, y)))];
-    let model = walled(&roof, |_| 0.5, &level(0.0)).unwrap();
+    let model = walled(&roof, |_| 0.5, &Plane::level(0.0)).unwrap();
     assert_eq!(check_invariants(&model), []);
     assert_eq!(count(&model, Surface::Ground), 1);
 }
@@ -190,7 +183,7 @@ proptest! {
             let quarter = if u.x.abs() > u.y.abs() { u.x > 0.0 } else { u.y > 0.0 };
             [0.0, 0.3, 0.55, 0.9][depths[usize::from(quarter) + 2 * usize::from(u.x.abs() > 0.5)]]
         };
-        if let Some(model) = walled(&facets, of, &level(0.0)) {
+        if let Some(model) = walled(&facets, of, &Plane::level(0.0)) {
             prop_assert_eq!(check_invariants(&model), []);
         }
     }
