@@ -7,11 +7,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::base::execution::progress::{Listener, with_listener};
 use ridgeline::orienting::orientation::{FileSource, InputFile, Needed};
 use ridgeline::orienting::structure_from_motion::{
-    FeatureOptions, GroundControl, OrientOptions, orient as orient_photos,
+    FeatureOptions, GroundControl, OrientOptions, Oriented, orient as orient_photos,
 };
 
 use super::args::OrientArgs;
 use super::failure::Failure;
+use super::scene_files::SceneFiles;
 use super::{files, input};
 
 /// Steps of the progress bar.
@@ -31,10 +32,6 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
         eprintln!("warning: {notice}");
     }
     let seen = format!("{} holds {seen}", args.photos.display());
-    // All of them are matched.
-    let whole = read.hold(&Needed::all);
-    whole.map_err(|e| input::refusal(&e, &seen))?;
-    let mut photographs = read.files;
     if let Some(path) = &args.gcp {
         let list = fs::read(path).map_err(|e| {
             Failure::Input(format!(
@@ -42,8 +39,9 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
                 path.display()
             ))
         })?;
-        photographs.retain(|file| !file.name().eq_ignore_ascii_case(GroundControl::FILE));
-        photographs.push(InputFile::new(GroundControl::FILE, list));
+        let is_list = |file: &InputFile| file.name().eq_ignore_ascii_case(GroundControl::FILE);
+        read.files.retain(|file| !is_list(file));
+        read.files.push(InputFile::new(GroundControl::FILE, list));
     }
     let defaults = FeatureOptions::default();
     let options = OrientOptions {
@@ -55,17 +53,7 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
         holds_center: args.hold_center,
         applies_fix: args.apply_fix,
     };
-    let bar = ProgressBar::new(BAR_STEPS as u64);
-    let style = ProgressStyle::with_template("{msg:12} {bar:40} {elapsed}");
-    bar.set_style(style.expect("the template is well formed"));
-    let shown = bar.clone();
-    let listener: Listener = Arc::new(move |fraction| {
-        shown.set_message(step_at(fraction));
-        shown.set_position((fraction * BAR_STEPS) as u64);
-    });
-    let oriented = with_listener(listener, || orient_photos(&photographs, &options));
-    bar.finish_and_clear();
-    let oriented = oriented.map_err(|e| input::refusal(&e, &seen))?;
+    let oriented = oriented(&mut read, &options, &seen)?;
     eprintln!("{seen}");
     files::write_all(&args.out, &oriented.files())?;
     print!("{}", oriented.report.to_text());
@@ -78,6 +66,31 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
         args.out.display()
     );
     Ok(())
+}
+
+/// Orients all photographs of a folder under a progress bar; `seen` counts its files. Of the
+/// photographs the heads are in memory afterwards.
+pub(super) fn oriented(
+    read: &mut SceneFiles,
+    options: &OrientOptions,
+    seen: &str,
+) -> Result<Oriented, Failure> {
+    let refuse = |e: ridgeline::Error| input::refusal(&e, seen);
+    // All of them are matched.
+    let whole = read.hold(&Needed::all);
+    whole.map_err(refuse)?;
+    let bar = ProgressBar::new(BAR_STEPS as u64);
+    let style = ProgressStyle::with_template("{msg:12} {bar:40} {elapsed}");
+    bar.set_style(style.expect("the template is well formed"));
+    let shown = bar.clone();
+    let listener: Listener = Arc::new(move |fraction| {
+        shown.set_message(step_at(fraction));
+        shown.set_position((fraction * BAR_STEPS) as u64);
+    });
+    let oriented = with_listener(listener, || orient_photos(&read.files, options));
+    bar.finish_and_clear();
+    read.hold(&|_| Vec::new()).map_err(refuse)?;
+    oriented.map_err(refuse)
 }
 
 /// What is done at a fraction of the work.

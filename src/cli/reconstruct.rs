@@ -7,18 +7,24 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::base::agreement::Finding;
 use ridgeline::base::execution::progress::Listener;
-use ridgeline::orienting::orientation::{FileSource, Needed};
+use ridgeline::orienting::orientation::{FileKind, FileSource, InputFile, Needed};
 use ridgeline::orienting::scene::Scene;
 use ridgeline::orienting::scene_loader::{
-    MOST_VIEWS, PlannedScene, Project, files_of_ground, files_of_settling, inspect_files, settled,
+    LoadOptions, MOST_VIEWS, PlannedScene, Project, files_of_ground, files_of_settling,
+    inspect_files, settled,
 };
+use ridgeline::orienting::structure_from_motion::OrientOptions;
 use ridgeline::pipeline::{Run, Stage, counted};
 use ridgeline::tiles::{Area, CELL_M, refuse_corrections};
 
 use super::args::ReconstructArgs;
 use super::failure::Failure;
 use super::input::{OpenedScene, open, read_params, refusal};
-use super::{files, table, tiles};
+use super::scene_files::SceneFiles;
+use super::{files, orient, table, tiles};
+
+/// The folder below the results with the orientation of photographs that had none.
+const ORIENTATION: &str = "orientation";
 
 /// Steps of the progress bar per stage.
 const BAR_STEPS: f64 = 100.0;
@@ -38,6 +44,7 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         seen,
     } = open(&args.input, params, &args.out)?;
     let refuse = |e: ridgeline::Error| refusal(&e, &seen);
+    orient_first(args, &mut input, &options, &seen)?;
     if let Some(method) = args.method {
         params.choose(method);
     }
@@ -74,6 +81,59 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         seen,
     };
     reconstruct_whole(args, opened, start)
+}
+
+/// Orients photographs that come without an orientation, and adds it to the files. It is written
+/// beside the results: another run may name it.
+fn orient_first(
+    args: &ReconstructArgs,
+    input: &mut SceneFiles,
+    options: &LoadOptions,
+    seen: &str,
+) -> Result<(), Failure> {
+    if options.orientation.is_some() || !are_photographs_alone(&input.files, options) {
+        return Ok(());
+    }
+    println!("no orientation among the files: the photographs are oriented first");
+    let wanted = OrientOptions {
+        applies_fix: args.input.apply_fix,
+        ..OrientOptions::default()
+    };
+    let oriented = orient::oriented(input, &wanted, seen)?;
+    print!("{}", oriented.report.in_short());
+    let written = oriented.files();
+    files::write_all(&args.out.join(ORIENTATION), &written)?;
+    if !oriented.report.is_metric {
+        let found = ridgeline::Error::Scene {
+            problem: "the photographs are oriented, but nothing tells their scale".to_owned(),
+            advice: "add ground control points (gcp_list.txt), or photographs with positions"
+                .to_owned(),
+        };
+        return Err(refusal(&found, seen));
+    }
+    let added = written.into_iter();
+    let added = added.map(|(name, bytes)| InputFile::new(&format!("{ORIENTATION}/{name}"), bytes));
+    input.files.extend(added);
+    input.files.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(())
+}
+
+/// Are there photographs, enough to be oriented, and nothing that is meant to orient them?
+fn are_photographs_alone(files: &[InputFile], options: &LoadOptions) -> bool {
+    let kinds = || {
+        inspect_files(files, options)
+            .files
+            .into_iter()
+            .map(|file| file.kind)
+    };
+    let is_beside = |kind: FileKind| {
+        use FileKind::{Footprints, Ignored, Image, ReferenceSystem, Terrain, UnreadImage};
+        matches!(
+            kind,
+            Footprints | Ignored | Image | ReferenceSystem | Terrain | UnreadImage
+        )
+    };
+    kinds().all(is_beside) && kinds().filter(|kind| *kind == FileKind::Image).count() >= 3
 }
 
 /// Reconstructs a scene that is loaded as one.

@@ -49,6 +49,42 @@ impl Photographs {
         run(fixed.into_iter().chain(more.iter().map(OsStr::new)))
     }
 
+    /// A list of control points in the manner of OpenDroneMap; of the one in the middle the
+    /// position is so many metres too far east.
+    fn control(&self, wrong_m: f64) -> String {
+        let places = [
+            ("north", [-8.0, 7.0, 0.0]),
+            ("south", [9.0, -7.0, 0.0]),
+            ("east", [8.0, 9.0, 0.0]),
+            ("west", [-9.0, -8.0, 0.0]),
+            ("middle", [-3.0, -9.0, 0.0]),
+            ("pole", [0.0, 9.0, 3.0]),
+        ];
+        let mut text = "EPSG:25832\n".to_owned();
+        for (name, [x, y, z]) in places {
+            for (i, view) in self.scene.views.iter().enumerate() {
+                let seen = view.camera.project(&Point3::new(x, y, z)).unwrap();
+                if !view.camera.contains(&seen, 0.0) {
+                    continue;
+                }
+                let wrong = if name == "middle" { wrong_m } else { 0.0 };
+                let (e, n) = (x + ON_MAP.x + wrong, y + ON_MAP.y);
+                writeln!(text, "{e} {n} {z} {} {} d{i}.png {name}", seen.x, seen.y).unwrap();
+            }
+        }
+        text
+    }
+
+    fn reconstruct(&self) -> Output {
+        let (photos, out) = (self.photos(), self.out());
+        run([
+            "reconstruct".as_ref(),
+            photos.as_os_str(),
+            "--out".as_ref(),
+            out.as_os_str(),
+        ])
+    }
+
     fn check(&self) -> Output {
         let (photos, out) = (self.photos(), self.out());
         run([
@@ -115,27 +151,8 @@ const ON_MAP: Vector3<f64> = Vector3::new(432_150.0, 5_412_340.0, 0.0);
 #[test]
 fn control_points_give_the_map_and_a_wrong_one_is_named() {
     let photographs = Photographs::new();
-    let places = [
-        ("north", [-8.0, 7.0, 0.0]),
-        ("south", [9.0, -7.0, 0.0]),
-        ("east", [8.0, 9.0, 0.0]),
-        ("west", [-9.0, -8.0, 0.0]),
-        ("middle", [-3.0, -9.0, 0.0]),
-        ("pole", [0.0, 9.0, 3.0]),
-    ];
-    let mut text = "EPSG:25832\n".to_owned();
-    for (name, [x, y, z]) in places {
-        for (i, view) in photographs.scene.views.iter().enumerate() {
-            let seen = view.camera.project(&Point3::new(x, y, z)).unwrap();
-            if !view.camera.contains(&seen, 0.0) {
-                continue;
-            }
-            // The middle one was read two metres too far east.
-            let wrong = if name == "middle" { 2.0 } else { 0.0 };
-            let (e, n) = (x + ON_MAP.x + wrong, y + ON_MAP.y);
-            writeln!(text, "{e} {n} {z} {} {} d{i}.png {name}", seen.x, seen.y).unwrap();
-        }
-    }
+    // It was read two metres too far east.
+    let text = photographs.control(2.0);
     let list = photographs.folder.path().join("points.txt");
     fs::write(&list, &text).unwrap();
     let list = list.to_str().unwrap();
@@ -164,6 +181,26 @@ fn control_points_give_the_map_and_a_wrong_one_is_named() {
         printed.contains("images and orientation agree"),
         "{printed}"
     );
+}
+
+#[test]
+fn photographs_alone_are_oriented_and_reconstructed_in_one_run_where_their_scale_is_known() {
+    let photographs = Photographs::new();
+    let output = photographs.reconstruct();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("nothing tells their scale"), "{message}");
+    fs::write(
+        photographs.photos().join("gcp_list.txt"),
+        photographs.control(0.0),
+    )
+    .unwrap();
+    let printed = crate::printed(&photographs.reconstruct());
+    assert!(printed.contains("oriented first"), "{printed}");
+    assert!(printed.contains("9 of 9 photographs oriented"), "{printed}");
+    let report = fs::read_to_string(photographs.out().join("report.json")).unwrap();
+    assert!(report.contains("25832"), "{report}");
+    assert!(photographs.out().join("orientation/images.txt").is_file());
 }
 
 #[test]

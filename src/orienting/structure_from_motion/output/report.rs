@@ -149,6 +149,17 @@ impl OrientReport {
 
     /// As text.
     pub fn to_text(&self) -> String {
+        let table = self.table() + &control_words(&self.control);
+        self.block_words() + &table + &self.remarks()
+    }
+
+    /// The same without a row for each photograph and control point.
+    pub fn in_short(&self) -> String {
+        self.block_words() + &self.remarks()
+    }
+
+    /// The block as a whole, and its cameras.
+    fn block_words(&self) -> String {
         let mut text = format!(
             "{} of {} photographs oriented, {} points, {:.2} rays a point, rms {:.3} px\n{}\n",
             self.photos.len(),
@@ -161,6 +172,12 @@ impl OrientReport {
         for camera in &self.cameras {
             text += &camera.words();
         }
+        text
+    }
+
+    /// A row for each photograph.
+    fn table(&self) -> String {
+        let mut text = String::new();
         let widest = self
             .photos
             .iter()
@@ -188,7 +205,12 @@ impl OrientReport {
                 p.file, p.rays, p.partners, p.rms_px
             );
         }
-        text += &control_words(&self.control);
+        text
+    }
+
+    /// What is left out, and warnings.
+    fn remarks(&self) -> String {
+        let mut text = String::new();
         for left in &self.left_out {
             let _ = writeln!(text, "not oriented: {}: {}", left.file, left.reason.words());
         }
