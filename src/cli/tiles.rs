@@ -22,6 +22,10 @@ pub(super) fn reconstruct_tiles(
     eprintln!("{seen}");
     let count = area.tiles().len();
     println!("{}", area.in_words());
+    let start = Instant::now();
+    area.look(input, &silent()).map_err(refuse)?;
+    let time = start.elapsed().as_secs_f64();
+    println!("{} ({time:.1} s)", area.seen_in_words());
     let mut seconds = Vec::new();
     loop {
         let start = Instant::now();

@@ -11,9 +11,9 @@ use serde_json::json;
 
 use super::division::Division;
 use super::join::{CellPart, Joined, join};
+use super::look::{self, FirstLook, Sightings, Site};
 use super::model_parts::{subset, walls_of};
 use super::tile::{Cell, Tile};
-use super::vacancy::{self, ASKED_AFTER};
 use crate::base::error::{Error, Result};
 use crate::base::execution::Listener;
 use crate::base::ids::ViewId;
@@ -21,11 +21,10 @@ use crate::base::params::Params;
 use crate::orienting::orientation::{FileSource, InputFile};
 use crate::orienting::scene::{Scene, View};
 use crate::orienting::scene_loader::{
-    LoadOptions, PlannedScene, ShownArea, files_of_settling, settled, whole_views,
+    LoadOptions, PlannedScene, ShownArea, files_of_settling, finer_than, settled, whole_views,
 };
 use crate::pipeline::{Run, Stage, counted};
 use crate::results::texture::texture_model;
-use crate::roofs::model::RoofModel;
 use crate::roofs::walls::place_walls_of;
 
 /// An area, its tiles, and what those that are done have found.
@@ -36,8 +35,13 @@ pub struct Area {
     pub(super) params: Params,
     pub(super) tiles: Vec<Tile>,
     left_out: Vec<[f64; 4]>,
-    /// Sum of all that the tiles are made from.
-    pub(super) sum: u32,
+    pub(super) look: FirstLook,
+    /// What the squares show that were looked at, and how many those are.
+    seen: (Sightings, usize),
+    /// What is connected of that.
+    sites: Vec<Site>,
+    /// Sum of all that the tiles are made from, but for their cells.
+    made_from: u32,
     pub(super) parts: Vec<CellPart>,
     pub(super) reports: Vec<TileReport>,
     pub(super) first_error: Option<Error>,
@@ -49,9 +53,9 @@ pub struct Area {
 pub struct TileReport {
     /// The part of the area that it is responsible for: x0, y0, x1, y1, metres.
     pub core: [f64; 4],
-    /// How many buildings it found, and which of its squares ended early, or why it was left out.
+    /// How many buildings it found, or why none was sought.
     pub outcome: String,
-    /// Was none of its squares reconstructed?
+    /// Could none of its cells be loaded?
     pub is_left_out: bool,
 }
 
@@ -67,15 +71,18 @@ impl Area {
         tile_m: f64,
     ) -> Result<Self> {
         refuse_corrections(params)?;
-        let (options, divided) = divided(source, options, ground, tile_m)?;
+        let (options, divided, look) = divided(source, options, ground, (params, tile_m))?;
         let Division {
             tiles, left_out, ..
         } = divided;
         let files = source.files();
         Ok(Self {
-            sum: sum_of(files, &options, params, &tiles),
+            made_from: sum_of(files, &options, params),
             tiles,
             left_out,
+            look,
+            seen: (Sightings::default(), 0),
+            sites: Vec::new(),
             whole: whole_views(files, &options)?,
             options,
             params: params.clone(),
@@ -100,6 +107,75 @@ impl Area {
             y1 - y0,
             counted(self.tiles.len(), "tiles"),
             Division::left_out_in_words(&self.left_out)
+        )
+    }
+
+    /// Looks at the whole area, in small photographs: the cells of the tiles then lie where a roof
+    /// may be. Before, they cover the area. An error says which photograph cannot be had.
+    pub fn look(&mut self, source: &mut dyn FileSource, progress: &Listener) -> Result<()> {
+        self.seen.0 = self.look.all(source, progress)?;
+        self.place_cells();
+        Ok(())
+    }
+
+    /// How many squares [`Self::look`] looks at.
+    pub fn squares_to_look_at(&self) -> usize {
+        self.look.len()
+    }
+
+    /// The options with which such a square is loaded; `None` where there is no such square.
+    pub fn options_of_look(&self, index: usize) -> Option<LoadOptions> {
+        self.look.options(index)
+    }
+
+    /// What a square shows that is looked at, as bytes to be kept; `None` where there is no such
+    /// square.
+    pub fn look_at(
+        &self,
+        mut files: &[InputFile],
+        index: usize,
+        progress: &Listener,
+    ) -> Option<Vec<u8>> {
+        (index < self.look.len()).then(|| {
+            let seen = self.look.at(index, &mut files, progress);
+            seen.expect("files in memory can be had").to_bytes()
+        })
+    }
+
+    /// Takes what the next square shows; after the last one the cells lie where a roof may be.
+    /// Refused where the bytes are not that.
+    pub fn take_look(&mut self, seen: &[u8]) -> Result<()> {
+        self.seen.0.add(Sightings::of_bytes(seen)?);
+        self.seen.1 += 1;
+        if self.seen.1 == self.look.len() {
+            self.place_cells();
+        }
+        Ok(())
+    }
+
+    fn place_cells(&mut self) {
+        let area = self.options.roi.expect("an area has one");
+        self.sites = self.seen.0.place_cells(&mut self.tiles, area);
+    }
+
+    /// Sum of all that the tiles are made from.
+    pub(super) fn sum(&self) -> u32 {
+        let tiles = serde_json::to_vec(&self.tiles).expect("all keys are strings");
+        let mut sum = crc32fast::Hasher::new_with_initial(self.made_from);
+        sum.update(&tiles);
+        sum.finalize()
+    }
+
+    /// What a first look shows, in a sentence.
+    pub fn seen_in_words(&self) -> String {
+        let worked_on: Vec<&Site> = self.sites.iter().filter(|site| site.is_worked_on).collect();
+        let area_m2: f64 = worked_on.iter().map(|site| site.area_m2).sum();
+        let tiles = self.tiles.iter().filter(|tile| !tile.cells.is_empty());
+        format!(
+            "a first look: {} where a roof may be, {area_m2:.0} m² in {}; {} where none is",
+            counted(worked_on.len(), "places"),
+            counted(tiles.count(), "tiles"),
+            self.sites.len() - worked_on.len(),
         )
     }
 
@@ -133,18 +209,19 @@ impl Area {
     /// of each tile go into `report.json` and may be empty.
     pub fn finish(mut self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
         let joined = self.join()?;
-        Ok(model_files(&joined, &self.params, &self.reports, seconds))
+        let done = (&self.sites[..], &self.reports[..]);
+        Ok(model_files(&joined, &self.params, done, seconds))
     }
 
     /// The same with 3D Tiles of a file for each square, so that a viewer fetches what it shows.
     pub fn finish_in_squares(mut self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
         let joined = self.join()?;
-        let (parts, reports) = (&self.parts, &self.reports);
+        let done = (&self.sites[..], &self.reports[..]);
         Ok(files_in_squares(
             &joined,
-            parts,
+            &self.parts,
             &self.params,
-            reports,
+            done,
             seconds,
         ))
     }
@@ -157,22 +234,20 @@ impl Area {
     }
 }
 
-/// CRC-32 of the version, the options, the parameters, the tiles and the files; of photographs the
-/// head may stand for all.
-fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params, tiles: &[Tile]) -> u32 {
+/// CRC-32 of the version, the options, the parameters and the files; of photographs the head may
+/// stand for all.
+fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params) -> u32 {
     #[derive(Serialize)]
     struct Made<'a> {
         version: &'a str,
         options: &'a LoadOptions,
         params: &'a Params,
-        tiles: &'a [Tile],
         files: Vec<(&'a str, u32)>,
     }
     let made = Made {
         version: env!("CARGO_PKG_VERSION"),
         options,
         params,
-        tiles,
         files: (files.iter())
             .map(|file| (&*file.path, crc32fast::hash(&file.head())))
             .collect(),
@@ -193,14 +268,15 @@ pub fn refuse_corrections(params: &Params) -> Result<()> {
     }
 }
 
-/// The tiles of the region of interest, or of the area that the views show, and the options with
-/// all that is decided once for the whole area; refused where the options do not go with tiles.
+/// The tiles of the region of interest, or of the area that the views show, the options with all
+/// that is decided once for the whole area, and the first look at it; refused where the options do
+/// not go with tiles.
 pub(super) fn divided(
     source: &mut dyn FileSource,
     options: &LoadOptions,
     ground: Option<[f64; 2]>,
-    tile_m: f64,
-) -> Result<(LoadOptions, Division)> {
+    (params, tile_m): (&Params, f64),
+) -> Result<(LoadOptions, Division, FirstLook)> {
     if options.apply_fix {
         return Err(Error::Scene {
             problem: "tiles take the orientation as it is".to_owned(),
@@ -215,8 +291,13 @@ pub(super) fn divided(
         None => Division::of_shown(&ShownArea::new(files, &options, ground)?, tile_m)?,
     };
     options.roi = Some(divided.area);
-    Ok((options, divided))
+    let small = finer_than(look::LOOK_PIXEL_M, files, &options, ground);
+    let look = FirstLook::new(divided.area, small, params)?;
+    Ok((options, divided, look))
 }
+
+/// What is said of a tile without cells.
+pub(super) const NOTHING_SEEN: &str = "a first look shows nothing here that may be a roof";
 
 /// What became of a tile.
 pub(super) struct WorkedTile {
@@ -238,7 +319,6 @@ pub(super) fn work_off(
     progress: &Listener,
 ) -> Result<WorkedTile> {
     let mut parts = Vec::new();
-    let mut vacant = 0;
     let mut first_error = None;
     let count = tile.cells.len() as f64;
     for (i, cell) in tile.cells.iter().enumerate() {
@@ -251,9 +331,7 @@ pub(super) fn work_off(
         let planned = PlannedScene::new(source, &options)?;
         match planned.load(source.files()) {
             Ok(scene) => {
-                let (part, is_vacant) = part(scene, params, cell, whole, &listener);
-                parts.push(part);
-                vacant += usize::from(is_vacant);
+                parts.push(part(scene, params, cell, whole, &listener));
             }
             Err(error) => {
                 first_error.get_or_insert(error);
@@ -265,31 +343,18 @@ pub(super) fn work_off(
     let buildings = parts.iter().map(|part| part.model.buildings.len()).sum();
     let outcome = match &first_error {
         Some(error) if parts.is_empty() => error.to_string(),
-        _ => in_words(buildings, vacant, tile.cells.len()),
+        _ if tile.cells.is_empty() => NOTHING_SEEN.to_owned(),
+        _ => counted(buildings, "buildings"),
     };
     Ok(WorkedTile {
         report: TileReport {
             core: tile.core,
             outcome,
-            is_left_out: parts.is_empty(),
+            is_left_out: parts.is_empty() && first_error.is_some(),
         },
         parts,
         first_error,
     })
-}
-
-/// What was found in the squares of a tile, so many of which hold no building and ended early.
-fn in_words(buildings: usize, vacant: usize, squares: usize) -> String {
-    let stage = ASKED_AFTER.title().to_lowercase();
-    match (vacant, buildings) {
-        (0, _) => counted(buildings, "buildings"),
-        (_, 0) if vacant == squares => format!("no building here, ended after the {stage}"),
-        _ => format!(
-            "{}; {vacant} of {} ended after the {stage}: no building there",
-            counted(buildings, "buildings"),
-            counted(squares, "squares")
-        ),
-    }
 }
 
 /// Joins the parts of all cells in the order of the grid, whatever the tiles were.
@@ -308,10 +373,10 @@ pub(super) fn files_in_squares(
     joined: &Joined,
     parts: &[CellPart],
     params: &Params,
-    reports: &[TileReport],
+    done: (&[Site], &[TileReport]),
     seconds: &[f64],
 ) -> Vec<(String, Vec<u8>)> {
-    let mut files = model_files(joined, params, reports, seconds);
+    let mut files = model_files(joined, params, done, seconds);
     if joined.squares_with_buildings() > 1 {
         let squares = joined.squares(parts, params.texture.jpeg_quality);
         files.retain(|(name, _)| squares.iter().all(|(other, _)| other != name));
@@ -324,9 +389,10 @@ pub(super) fn files_in_squares(
 pub(super) fn model_files(
     joined: &Joined,
     params: &Params,
-    reports: &[TileReport],
+    (sites, reports): (&[Site], &[TileReport]),
     seconds: &[f64],
 ) -> Vec<(String, Vec<u8>)> {
+    let left_out = sites.iter().filter(|site| !site.is_worked_on);
     let mut files = joined.files(&params.texture);
     let report = json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -335,6 +401,7 @@ pub(super) fn model_files(
         "buildings": joined.model.buildings.len(),
         "facets": joined.model.facets.len(),
         "tiles": reports,
+        "left_out": left_out.collect::<Vec<&Site>>(),
         "seconds": seconds,
         "warnings": joined.scene.warnings,
         "params": params,
@@ -344,26 +411,20 @@ pub(super) fn model_files(
     files
 }
 
-/// What one cell shows, and whether it ended early because there is no building.
+/// What one cell shows.
 fn part(
     scene: Scene,
     params: &Params,
     cell: &Cell,
     whole: &Scene,
     progress: &Listener,
-) -> (CellPart, bool) {
+) -> CellPart {
     let views = places(&scene, whole);
     let mut run = Run::new(scene, params.clone());
     let stages: Vec<Stage> = (run.stages().into_iter())
         .filter(|&stage| stage != Stage::Model)
         .collect();
-    let asked_before = stages.partition_point(|&stage| stage <= ASKED_AFTER);
-    let mut is_vacant = false;
     for (i, &stage) in stages.iter().enumerate() {
-        is_vacant = i == asked_before && vacancy::is_vacant(&run, cell);
-        if is_vacant {
-            break;
-        }
         let (done, all) = (i as f64, stages.len() as f64);
         let of_cell = Listener::clone(progress);
         let listener: Listener = Arc::new(move |fraction| of_cell((done + fraction) / all));
@@ -371,11 +432,7 @@ fn part(
     }
     let (scene, results) = (run.scene(), run.results());
     let found = "the stages have run";
-    let nothing = RoofModel::default();
-    let all = match is_vacant {
-        true => &nothing,
-        false => results.roof_model().expect(found),
-    };
+    let all = results.roof_model().expect(found);
     let kept = cell.keep(all, &scene.origin);
     let model = subset(all, &kept);
     let walls = (place_walls_of(scene, all, &kept, results.ground.as_ref()).into_iter())
@@ -388,7 +445,7 @@ fn part(
         .half_planes
         .as_ref()
         .map(|found| found.value.clone());
-    let part = CellPart {
+    CellPart {
         cell: *cell,
         origin: scene.origin,
         views,
@@ -399,8 +456,7 @@ fn part(
         model,
         walls,
         textured,
-    };
-    (part, is_vacant)
+    }
 }
 
 /// Where the parts of the views lie in the whole images, pixels.

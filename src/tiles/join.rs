@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use nalgebra::{Point3, Vector2, Vector3};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::atlases::AtlasPlaces;
@@ -137,13 +137,18 @@ impl Joined {
         } in &self.chosen
         {
             let (part, place) = (&parts[*part], parts[*part].cell.place());
+            let same = squares.iter().filter(|(other, _)| *other == place).count();
             let faces: Vec<Vec<FaceTexture>> = (buildings.iter())
                 .map(|&b| part.textured.faces[b].clone())
                 .collect();
             let atlas = atlas_jpeg(&part.textured, quality);
             let textures = (&faces[..], &atlas[..]);
             let model = glb_of(&self.scene, &self.model, joined.clone(), textures);
-            files.push((format!("square_{}_{}.glb", place[0], place[1]), model));
+            let name = match same {
+                0 => format!("square_{}_{}.glb", place[0], place[1]),
+                n => format!("square_{}_{}_{}.glb", place[0], place[1], n + 1),
+            };
+            files.push((name, model));
             squares.push((place, joined.clone()));
         }
         let contents: Vec<SquareContent> = (squares.into_iter().zip(&files))
@@ -183,10 +188,11 @@ pub fn join(scene: Scene, parts: &[CellPart]) -> Joined {
     for (i, (buildings, corner)) in chosen.into_iter().zip(corners).enumerate() {
         let part = &parts[i];
         join_segments(part, &mut joined.segments, &mut covered);
-        let ids = join_lines(part, &buildings, &mut joined);
+        let is_own = |p: &Point3<f64>| owns(parts, i, &(p.xy() + part.origin.xy()));
+        let ids = join_lines(part, &buildings, is_own, &mut joined);
         let first = joined.model.buildings.len();
         join_buildings(part, &buildings, &ids, (reduction, corner), &mut joined);
-        join_candidates(part, &mut joined);
+        join_candidates(part, is_own, &mut joined);
         if !buildings.is_empty() {
             joined.chosen.push(Chosen {
                 part: i,
@@ -196,6 +202,17 @@ pub fn join(scene: Scene, parts: &[CellPart]) -> Joined {
         }
     }
     joined
+}
+
+/// Is a place of the world that of a part? It is of the one in whose core it lies deepest.
+fn owns(parts: &[CellPart], index: usize, p: &Point2<f64>) -> bool {
+    let depth = parts[index].cell.depth(p);
+    let mut others = parts.iter().enumerate().filter(|(i, _)| *i != index);
+    depth >= 0.0
+        && others.all(|(i, other)| {
+            let of_other = other.cell.depth(p);
+            of_other < depth || (of_other == depth && index < i)
+        })
 }
 
 /// For each part, the buildings to take: each building once, from the cell in whose core its middle
@@ -298,7 +315,12 @@ struct NewIds {
     half_planes: Vec<Option<HalfPlaneId>>,
 }
 
-fn join_lines(part: &CellPart, buildings: &[usize], joined: &mut Joined) -> NewIds {
+fn join_lines(
+    part: &CellPart,
+    buildings: &[usize],
+    is_own: impl Fn(&Point3<f64>) -> bool,
+    joined: &mut Joined,
+) -> NewIds {
     let by = joined.scene.origin - part.origin;
     let facets = buildings
         .iter()
@@ -312,7 +334,7 @@ fn join_lines(part: &CellPart, buildings: &[usize], joined: &mut Joined) -> NewI
         half_planes: Vec::new(),
     };
     for (i, line) in part.lines.iter().enumerate() {
-        if !(needed[i] || part.cell.holds(&(line.at(0.5).xy() + part.origin.xy()))) {
+        if !(needed[i] || is_own(&line.at(0.5))) {
             continue;
         }
         ids.lines[i] = Some(LineId::from_index(joined.lines.len()));
@@ -351,11 +373,10 @@ fn join_lines(part: &CellPart, buildings: &[usize], joined: &mut Joined) -> NewI
     ids
 }
 
-/// Adds the candidates of a part's core, which no other part has.
-fn join_candidates(part: &CellPart, joined: &mut Joined) {
+/// Adds the candidates at the places of a part.
+fn join_candidates(part: &CellPart, is_own: impl Fn(&Point3<f64>) -> bool, joined: &mut Joined) {
     let by = joined.scene.origin - part.origin;
-    let in_core = |p: &Point3<f64>| part.cell.holds(&(p.xy() + part.origin.xy()));
-    let moved = part.candidates.moved(&by, in_core);
+    let moved = part.candidates.moved(&by, is_own);
     joined.candidates.lines.extend(moved.lines);
     joined.candidates.facets.extend(moved.facets);
 }

@@ -58,7 +58,7 @@ impl Area {
     /// Takes the outcome of the next tile instead of working it off; [`Area::finish`] joins them.
     pub fn take(&mut self, kept: &[u8]) -> Result<()> {
         let TileOutcome { report, parts } = self.key(self.reports.len()).unpack(kept)?;
-        if parts.is_empty() {
+        if report.is_left_out {
             self.first_error.get_or_insert_with(|| Error::Scene {
                 problem: format!("no tile could be read; the first one: {}", report.outcome),
                 advice: "choose another region, other views or another orientation".to_owned(),
@@ -71,7 +71,7 @@ impl Area {
 
     fn key(&self, index: usize) -> PartKey {
         PartKey {
-            plan: self.sum,
+            plan: self.sum(),
             tile: u32::try_from(index + 1).expect("fewer than 2^32 tiles"),
         }
     }

@@ -1,21 +1,21 @@
 //! Large areas in overlapping cells, one at a time, whose models join.
 //!
 //! ```text
-//! division     which tiles and cells of an area are worked off; the plan that the page shows
+//! division     which tiles and squares of an area are worked off; the plan that the page shows
+//! look         a first look at small photographs: cells lie where a roof may be
 //! tile         cells on a grid of the world, with a margin around them; tiles of cells
 //! model_parts  buildings of a model in another model and frame
 //! atlases      where the atlases of all cells stand in one
 //! join         one model: each building once, ids renumbered, whole images, one atlas
 //! area         one cell after the other
-//! vacancy      may a cell hold a building, or does it end early?
 //! kept         outcomes of its tiles as bytes, to go on from
 //! fields       what the bytes of a part hold beyond what its types write by themselves
 //! part_file    a part as a file: whose it is, and whether it is whole
 //! plan         the tiles of a block as a file, for many machines
 //! ```
 //!
-//! Invariant: a building is reconstructed whole in the cell that holds its middle, as long as it
-//! reaches less than [`MARGIN_M`] beyond the core, so that no seam runs through a building.
+//! Invariant: a building is reconstructed whole in the cell that holds its middle, as long as what
+//! a first look shows of it is no longer than 96 m, so that no seam runs through a building.
 //! Buildings that touch each other and come from different cells may overlap by the accuracy of
 //! their eaves.
 //!
@@ -29,14 +29,15 @@ mod fields;
 mod fixture;
 mod join;
 mod kept;
+mod look;
 mod model_parts;
 mod part_file;
 mod plan;
 mod tile;
-mod vacancy;
 
 pub use area::{Area, TileReport, refuse_corrections};
 pub use division::{FlightPlan, TilePlan};
 pub use join::{CellPart, Joined, join};
+pub use look::Site;
 pub use plan::{BlockPlan, BlockSource, HeadStamp, InputStamp, PlannedCell, PlannedTile};
 pub use tile::{CELL_M, Cell, MARGIN_M, Tile, plan_tiles};

@@ -18,10 +18,12 @@ use serde::{Deserialize, Serialize};
 use super::area::{divided, files_in_squares, join_cells, refuse_corrections, work_off};
 use super::division::Division;
 use super::join::Joined;
+use super::look::Site;
 use super::part_file::{PartKey, TileOutcome};
 use super::tile::{Cell, Tile};
 use crate::base::error::{Error, Result};
 use crate::base::execution::Listener;
+use crate::base::execution::progress::silent;
 use crate::base::params::Params;
 use crate::orienting::orientation::{BLOCK_BYTES, FileSource, InputFile, Needed};
 use crate::orienting::scene_loader::{
@@ -230,6 +232,9 @@ pub struct BlockPlan {
     /// The squares of the area that are left out because fewer than three views show their ground.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<[f64; 4]>,
+    /// What a first look shows: the cells of the tiles lie around the sites that are worked on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sites: Vec<Site>,
 }
 
 impl BlockPlan {
@@ -237,7 +242,7 @@ impl BlockPlan {
     pub const FILE: &str = "tiles.json";
 
     /// Divides the region of interest into tiles of about `tile_m` metres; without a region the
-    /// area that three views show. A few photographs are decoded, which show where the ground is.
+    /// area that three views show. Photographs are decoded, which show where a roof may be.
     /// `inputs` are the stamps of all files.
     pub fn new(
         source: BlockSource,
@@ -248,8 +253,10 @@ impl BlockPlan {
         tile_m: f64,
     ) -> Result<Self> {
         refuse_corrections(params)?;
-        let (options, divided) = divided(files, options, None, tile_m)?;
+        let (options, mut divided, look) = divided(files, options, None, (params, tile_m))?;
         whole_views(files.files(), &options)?;
+        let seen = look.all(files, &silent())?;
+        let sites = seen.place_cells(&mut divided.tiles, divided.area);
         let planned = planned(files, &options, &divided.tiles)?;
         Ok(Self {
             ridgeline: env!("CARGO_PKG_VERSION").to_owned(),
@@ -260,6 +267,7 @@ impl BlockPlan {
             inputs,
             tiles: planned,
             left_out: divided.left_out,
+            sites,
         })
     }
 
@@ -386,7 +394,8 @@ impl BlockPlan {
             });
         }
         let joined = join_cells(whole, &mut parts);
-        let mut files = files_in_squares(&joined, &parts, &self.params, &reports, &[]);
+        let mut files =
+            files_in_squares(&joined, &parts, &self.params, (&self.sites, &reports), &[]);
         let Joined {
             scene,
             model,

@@ -43,9 +43,10 @@ pub struct Tile {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cell {
-    /// What it is responsible for: a square of the grid, as far as it lies in the area.
+    /// What it is responsible for, as far as it lies in the area: a square of the grid, or around
+    /// what a first look shows of roofs.
     pub core: [f64; 4],
-    /// What it looks at: the whole square and a margin.
+    /// What it looks at: that, whole, and a margin.
     pub region: [f64; 4],
 }
 
@@ -108,12 +109,6 @@ impl Cell {
         (p.x - x0).min(x1 - p.x).min(p.y - y0).min(y1 - p.y)
     }
 
-    /// Does the core hold this place? Cores share no place.
-    pub(super) fn holds(&self, p: &Point2<f64>) -> bool {
-        let [x0, y0, x1, y1] = self.core;
-        p.x >= x0 && p.x < x1 && p.y >= y0 && p.y < y1
-    }
-
     /// The buildings that this cell may be responsible for, by their indices. `origin` is that of
     /// the model's frame.
     pub fn keep(&self, model: &RoofModel, origin: &Vector3<f64>) -> Vec<usize> {
@@ -123,10 +118,15 @@ impl Cell {
             .collect()
     }
 
-    /// Its column and row on the grid.
+    /// The square of the grid that holds its middle: column and row.
     pub(super) fn place(&self) -> [i64; 2] {
-        [0, 1].map(|i| ((self.region[i] + MARGIN_M) / CELL_M).round() as i64)
+        square_at(self.core)
     }
+}
+
+/// The square of the grid that holds the middle of a box: column and row.
+pub(super) fn square_at([x0, y0, x1, y1]: [f64; 4]) -> [i64; 2] {
+    [x0 + x1, y0 + y1].map(|sum| (0.5 * sum / CELL_M).floor() as i64)
 }
 
 #[cfg(test)]
@@ -159,10 +159,14 @@ mod tests {
         assert_eq!(tiles.len(), 3);
         let cells: Vec<Cell> = tiles.iter().flat_map(|t| t.cells.clone()).collect();
         assert_eq!(cells.len(), 5 * 2);
-        for i in 0..1000 {
+        for i in 1..1000 {
             let t = f64::from(i) / 1000.0;
             let p = Point2::new(100.0 + 251.0 * t, -50.0 + 99.0 * (t * 37.0).fract());
-            assert_eq!(cells.iter().filter(|cell| cell.holds(&p)).count(), 1, "{p}");
+            assert_eq!(
+                cells.iter().filter(|cell| cell.depth(&p) > 0.0).count(),
+                1,
+                "{p}"
+            );
         }
         for (area, size) in [
             ([0.0, 0.0, 1.0, 1.0], 5.0),

@@ -94,16 +94,56 @@ impl Session {
         to_js(&area.tiles().iter().map(|t| t.core).collect::<Vec<_>>())
     }
 
+    /// How many squares of the area are looked at before its tiles are worked off: the tiles then
+    /// work where a roof may be.
+    #[wasm_bindgen(js_name = squaresToLookAt)]
+    pub fn squares_to_look_at(&self) -> Result<usize, JsValue> {
+        Ok(self.planned()?.squares_to_look_at())
+    }
+
+    /// The photographs that a look needs first, to measure the ground: to be filled.
+    #[wasm_bindgen(js_name = groundFilesOfLook, unchecked_return_type = "LackingFile[]")]
+    pub fn ground_files_of_look(&self, index: usize) -> Result<JsValue, JsValue> {
+        let options = self.planned()?.options_of_look(index);
+        self.lacking_of(options.map(|one| vec![one]), files_of_ground)
+    }
+
+    /// The photographs that a look makes views of, once the others are filled.
+    #[wasm_bindgen(js_name = viewFilesOfLook, unchecked_return_type = "LackingFile[]")]
+    pub fn view_files_of_look(&self, index: usize) -> Result<JsValue, JsValue> {
+        let options = self.planned()?.options_of_look(index);
+        self.lacking_of(options.map(|one| vec![one]), files_of_views)
+    }
+
+    /// What a square shows at a first look, as bytes, to be kept; `takeLook` goes on from it.
+    #[wasm_bindgen(js_name = lookAt, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
+    pub fn look_at(
+        &self,
+        index: usize,
+        #[wasm_bindgen(unchecked_param_type = "(fraction: number) => void")] on_progress: &Function,
+    ) -> Result<Vec<u8>, JsValue> {
+        let area = self.planned()?;
+        let seen = area.look_at(&self.files, index, &listener_of(on_progress));
+        seen.ok_or_else(no_tile)
+    }
+
+    /// Takes what the next square shows, from the first on.
+    #[wasm_bindgen(js_name = takeLook)]
+    pub fn take_look(&mut self, seen: &[u8]) -> Result<(), JsValue> {
+        let area = self.area.as_mut().ok_or_else(not_planned)?;
+        area.take_look(seen).map_err(|e| input_error(&e))
+    }
+
     /// The photographs that a tile needs first, to measure the ground: to be filled.
     #[wasm_bindgen(js_name = groundFilesOfTile, unchecked_return_type = "LackingFile[]")]
     pub fn ground_files_of_tile(&self, index: usize) -> Result<JsValue, JsValue> {
-        self.lacking_of_tile(index, files_of_ground)
+        self.lacking_of(self.planned()?.options_of(index), files_of_ground)
     }
 
     /// The photographs that a tile makes views of, once the others are filled.
     #[wasm_bindgen(js_name = viewFilesOfTile, unchecked_return_type = "LackingFile[]")]
     pub fn view_files_of_tile(&self, index: usize) -> Result<JsValue, JsValue> {
-        self.lacking_of_tile(index, files_of_views)
+        self.lacking_of(self.planned()?.options_of(index), files_of_views)
     }
 
     /// Works off a tile: its outcome as bytes, to be kept. `tileModel` shows it, `takeTile` goes on
@@ -143,14 +183,14 @@ impl Session {
         Ok(())
     }
 
-    /// The photographs that are not whole among those that the squares of a tile need.
-    fn lacking_of_tile(
+    /// The photographs that are not whole among those that are needed to load all of these.
+    fn lacking_of(
         &self,
-        index: usize,
+        loaded: Option<Vec<LoadOptions>>,
         needed: fn(&[InputFile], &LoadOptions) -> Vec<Needed>,
     ) -> Result<JsValue, JsValue> {
-        let cells = self.planned()?.options_of(index).ok_or_else(no_tile)?;
-        let needed = cells.iter().flat_map(|cell| needed(&self.files, cell));
+        let loaded = loaded.ok_or_else(no_tile)?;
+        let needed = loaded.iter().flat_map(|one| needed(&self.files, one));
         self.lacking(&Needed::merged(needed, &self.files))
     }
 

@@ -5,8 +5,8 @@
                                [--fit FOLDER] [--more FOLDER] [--dry] [--keep]
     python3 tests/evaluation/calibrate.py --self-test
 
-Every scene runs four times: with all line candidates accepted, with all facet candidates
-accepted, with all planes between parallel lines as candidates, and as it is, which gives the facets that are found once others were rejected, and the
+Every scene runs five times: with all line candidates accepted, with all facet candidates
+accepted, with all planes between parallel lines as candidates, looked at as a large area is, and as it is, which gives the facets that are found once others were rejected, and the
 lines in the finished model. The folder of --fit (../shared/fit) has random scenes, named `r` and
 their seed, that of --more (../shared/scenes) those of FITTED; beside them lies `score/` with
 score.py, by whose definitions a candidate is true. Printed are area under the ROC curve and expected calibration error of the
@@ -60,12 +60,15 @@ SIGNS = {
         'plane_nats_per_m2': 1, 'displaced_plane_margin_nats_per_m2': 1, 'outline_on_lines': 1, 'cos_slope': 0,
     },
     'buildings': {'height_m': 1, 'roughness_px': -1, 'excess_green': 0, 'correlation': 0, 'cos_slope': 0, 'ln_area_m2': 0},
+    'sites': {'ln_1_plus_surface_m2': 1, 'ln_1_plus_lines_m': 1, 'ln_width_m': 1},
     'vegetation': {'height_m': 0, 'roughness_px': 1, 'excess_green': 1, 'correlation': 0, 'cos_slope': 0, 'ln_area_m2': 0},
     'model_lines': {'nats_before': 1, 'is_border': 0, 'is_intersection': 0, 'share_on_surfaces': 1, 'hidden_views': -1,
                     'facets_on_it': 1},
 }
 # A facet is true if so much of it lies on true faces of its plane; of those of which more does the windows are counted.
 TRUE_SHARE, WINDOWS_SHARE, FEWEST_WINDOWS = 0.5, 0.9, 20
+# Of a site so little: what stands beside a house is connected with it.
+SITE_SHARE = 0.15
 # Of a rectangle more: of those of one plane the one with the right ends is wanted.
 RECTANGLE_SHARE = 0.75
 # How near the surface model a patch lies on it, and how high what stands on it rises, metres.
@@ -104,7 +107,7 @@ def main():
               f'{scorer} {"is there" if scorer.is_file() else "is missing"}; two scenes are needed')
         return 0
     truth = loaded(scorer)
-    lines, facets, model_lines, buildings, vegetation, rectangles = [], [], [], [], [], []
+    lines, facets, model_lines, buildings, vegetation, rectangles, sites = [], [], [], [], [], [], []
     for scene in scenes:
         found = {how: run(args, scene, how) for how in RUN}
         if all(found.values()):
@@ -117,9 +120,12 @@ def main():
             buildings += [{**s, 'values': s['building'], 'true': s['class'] == 'building'} for s in surfaces]
             vegetation += [{**s, 'values': s['vegetation'], 'true': s['class'] == 'vegetation'}
                            for s in surfaces if s['class'] != 'building']
+            # The truth of the real ones has some buildings of many.
+            sites += [] if kind_of(scene.name) == 'real' else sites_of(scene, looked_at(args, scene))
             print(f'{scene.name}: {len(lines)} lines, {len(facets)} facets so far', flush=True)
     for kind, candidates in (('lines', lines), ('facets', facets), ('model_lines', model_lines),
-                             ('rectangles', rectangles), ('buildings', buildings), ('vegetation', vegetation)):
+                             ('rectangles', rectangles), ('buildings', buildings), ('vegetation', vegetation),
+                             ('sites', sites)):
         calibrate(args, kind, candidates)
     calibrate_windows(args, facets)
     calibrate_uncertainty(args, truth, scenes)
@@ -157,6 +163,18 @@ def run(args, scene, how):
             print(f'{scene.name}, {how}: exit code {done.returncode}: {done.stderr.strip()}', file=sys.stderr)
             return None
     return json.loads((out / 'evidence.json').read_text())
+
+
+def looked_at(args, scene):
+    """The sites that a first look shows; none when it failed."""
+    out = RUNS / scene.name / 'look'
+    if not (args.keep and (out / 'tiles.json').is_file()):
+        done = subprocess.run([args.binary.resolve(), 'plan', scene, '--tile', '60', '--out', out],
+                              capture_output=True, text=True)
+        if done.returncode:
+            print(f'{scene.name}, look: exit code {done.returncode}: {done.stderr.strip()}', file=sys.stderr)
+            return []
+    return json.loads((out / 'tiles.json').read_text()).get('sites', [])
 
 
 # ---- what is true -------------------------------------------------------------------------------
@@ -236,6 +254,24 @@ def overlap_of(truth, face, place, normal, offset):
     angle = math.degrees(math.acos(np.clip(face.n @ normal, -1, 1)))
     is_on = angle < truth.MAX_ANGLE and math.sqrt(squares / max(area, 1e-9)) < truth.MAX_RMS_Z
     return shared.area if is_on else 0.0
+
+
+def sites_of(scene, found):
+    """The sites of a scene; true ones have a roof."""
+    from shapely.geometry import Polygon
+    from shapely.ops import unary_union
+    roofs = json.loads((scene / 'truth' / 'roofs.json').read_text())
+    roofs = unary_union([Polygon([p[:2] for p in f['polygon']]).buffer(0) for b in roofs['buildings'] for f in b['faces']])
+    sites = []
+    for site in found:
+        outline = [[*corner, 0.0] for corner in site['outline']]
+        ground = Polygon((np.array(outline) + to_truth(scene, outline))[:, :2])
+        if not site['is_given']:
+            values = {'ln_1_plus_surface_m2': math.log1p(site['surface_m2']), 'ln_1_plus_lines_m': math.log1p(site['lines_m']),
+                      'ln_width_m': math.log(site['width_m'])}
+            sites.append({'scene': scene.name, 'values': values,
+                          'true': ground.intersection(roofs).area > SITE_SHARE * ground.area})
+    return sites
 
 
 def surfaces_of(truth, scene, found):

@@ -76,7 +76,11 @@ function prepareHelpers(stage, views, earlier) {
 }
 
 function runTiles(session, tileM) {
-    for (const index of session.planTiles(options, tileM, null).keys()) {
+    const tiles = session.planTiles(options, tileM, null);
+    for (let square = 0; square < session.squaresToLookAt(); square += 1) {
+        session.takeLook(session.lookAt(square, () => {}));
+    }
+    for (const index of tiles.keys()) {
         session.takeTile(session.runTile(index, () => {}));
     }
     session.joinTiles();

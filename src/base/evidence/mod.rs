@@ -170,6 +170,12 @@ impl EvidenceModel {
         MODEL.get_or_init(|| Self::read(include_str!("vegetation.json")))
     }
 
+    /// The model of roofs among the sites that a first look at a large area shows.
+    pub(crate) fn of_sites() -> &'static Self {
+        static MODEL: OnceLock<EvidenceModel> = OnceLock::new();
+        MODEL.get_or_init(|| Self::read(include_str!("sites.json")))
+    }
+
     /// The name of a feature as the tables have it.
     fn feature_called(name: &str) -> Option<&'static str> {
         let known = [INSIDE_FOOTPRINT, POINT_CLOUD];
@@ -177,6 +183,7 @@ impl EvidenceModel {
             return Some(known);
         }
         let models = [
+            Self::of_sites(),
             Self::of_lines(),
             Self::of_model_lines(),
             Self::of_facets(),

@@ -61,6 +61,28 @@ pub fn settled(files: &[InputFile], options: &LoadOptions) -> LoadOptions {
     }
 }
 
+/// The options with photographs that are reduced as far as their pixels stay finer than this on the
+/// ground, metres, and no less than before. `ground` has its lowest and highest height where they
+/// were measured, metres, world frame of the input.
+pub fn finer_than(
+    pixel_m: f64,
+    files: &[InputFile],
+    options: &LoadOptions,
+    ground: Option<[f64; 2]>,
+) -> LoadOptions {
+    let stated = options.ground_z.map(|z| [z, z]);
+    let ground = stated.or(ground).or_else(|| ground_heights(files, options));
+    let plan = unreduced_plan(files, options);
+    let cameras = plan.views.iter().map(|view| &view.whole);
+    let whole = ground
+        .and_then(|[low, high]| pixel_in_the_middle(cameras, 0.5 * (low + high) - plan.origin.z));
+    let factor = whole.map_or(1, |whole| reduction_to(pixel_m, whole));
+    LoadOptions {
+        reduction: Some(factor.max(options.reduction.unwrap_or(1))),
+        ..options.clone()
+    }
+}
+
 /// The plan of the whole images, of any size.
 pub(crate) fn whole_plan(files: &[InputFile], options: &LoadOptions) -> Plan {
     let everywhere = LoadOptions {
@@ -96,7 +118,12 @@ fn reduction(files: &[InputFile], options: &LoadOptions) -> u32 {
 
 /// The largest whole factor that leaves pixels of this size on the ground, metres, fine enough.
 pub(crate) fn reduction_of(pixel_m: f64) -> u32 {
-    ((FINEST_PIXEL_M / pixel_m) as u32).max(1)
+    reduction_to(FINEST_PIXEL_M, pixel_m)
+}
+
+/// The largest whole factor that leaves pixels finer than `to_m` of pixels of this size, metres.
+fn reduction_to(to_m: f64, pixel_m: f64) -> u32 {
+    ((to_m / pixel_m) as u32).max(1)
 }
 
 /// Median size of a pixel in the middle of an image on ground of this height, metres.

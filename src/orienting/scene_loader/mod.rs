@@ -45,7 +45,8 @@ mod tests;
 pub use archive::unpack;
 pub use candidate::OrientationCandidate;
 pub use ground::{
-    files_of_ground, files_of_settling, files_of_views, ground_files, ground_heights, settled,
+    files_of_ground, files_of_settling, files_of_views, finer_than, ground_files, ground_heights,
+    settled,
 };
 pub use input::LoadOptions;
 pub use inspect::{

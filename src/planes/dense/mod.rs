@@ -27,7 +27,6 @@ pub use surface_class::{SurfaceClass, SurfaceEvidence};
 
 use self::cloud::{Matched, compare};
 use self::patch_match::PatchGrid;
-use self::region::Region;
 
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
@@ -36,7 +35,7 @@ use crate::base::evidence::JudgedSurface;
 use crate::base::execution::Sharded;
 use crate::base::geometry::{Plane, bounds};
 use crate::base::ids::ProposalOrigin;
-use crate::base::math::{larger, smaller};
+
 use crate::base::params::PointCloudParams;
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
@@ -179,34 +178,6 @@ pub fn dense_planes(
         point_cloud,
     };
     Ok((planes, trace))
-}
-
-/// The height above the ground, metres, of the highest place of the surfaces that the views agree
-/// on in a part of the plan (two corners of its box, metres, local frame), which is matched by
-/// itself as [`dense_planes`] matches all of it; `None` where there are none.
-pub fn highest_surface(
-    scene: &Scene,
-    lines: &[Line3d],
-    ground: &Ground,
-    part: [Point2<f64>; 2],
-) -> Option<f64> {
-    let search = Search::new(scene, lines)?;
-    let [low, high] = search.extent;
-    let low = Point2::new(larger(low.x, part[0].x), larger(low.y, part[0].y));
-    let high = Point2::new(smaller(high.x, part[1].x), smaller(high.y, part[1].y));
-    if low.x >= high.x || low.y >= high.y {
-        return None;
-    }
-    let matcher = search.matcher();
-    let found = search.matched(&matcher, search.grid([low, high]));
-    let found = found.expect("nobody divides the maps of a part");
-    let regions = segmentation::segmented(&found, &matcher, search.z_per_pixel);
-    let above = |region: &Region, k: usize| {
-        let p = found.patches[k]?.middle;
-        Some(region.plane.z_at(p.x, p.y) - ground.z_at(&p))
-    };
-    let places = (regions.iter()).flat_map(|r| r.cells.iter().filter_map(move |&k| above(r, k)));
-    places.reduce(larger)
 }
 
 /// Where and how finely the surfaces of a scene are sought.

@@ -27,6 +27,13 @@ pub struct SurfaceClass {
     pub vegetation: f64,
 }
 
+impl SurfaceClass {
+    /// Is it likelier a roof than not?
+    pub fn is_building(&self) -> bool {
+        self.building >= 0.5
+    }
+}
+
 /// What speaks for a class, and against it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]

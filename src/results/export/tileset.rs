@@ -31,7 +31,7 @@ const HALF_STEP_M: f64 = 50.0;
 /// Half a side of the box around nothing, metres.
 const LEAST_HALF_M: f64 = 0.5;
 
-/// A square of a grid, and the buildings that its content shows.
+/// A part of a square of a grid, and the buildings that its content shows.
 #[derive(Clone, Copy, Debug)]
 pub struct SquareContent<'a> {
     /// Its column and row on the grid.
@@ -47,7 +47,7 @@ pub(super) fn tileset(scene: &Scene, model: &RoofModel, content: &str) -> Vec<u8
     written(scene, Node::leaf(scene, &model.buildings, content))
 }
 
-/// The tileset of squares, each with some buildings and at its own place; the local frame is that
+/// The tileset of squares, each with some buildings and at its place; the local frame is that
 /// of all.
 pub fn tileset_of_squares(scene: &Scene, squares: &[SquareContent]) -> Vec<u8> {
     let from = [0, 1].map(|i| squares.iter().map(|s| s.place[i]).min().unwrap_or(0));
@@ -61,8 +61,11 @@ pub fn tileset_of_squares(scene: &Scene, squares: &[SquareContent]) -> Vec<u8> {
 
 /// The tile of the squares in a block of the grid that begins at a place and has this side.
 fn tree(scene: &Scene, squares: &[&SquareContent], [x, y]: [i64; 2], side: i64) -> Option<Node> {
-    if let (1, [square, ..]) = (side, squares) {
-        return Some(Node::leaf(scene, square.buildings, square.uri));
+    let leaf = |square: &&SquareContent| Node::leaf(scene, square.buildings, square.uri);
+    match (side, squares) {
+        (1, [square]) => return Some(leaf(square)),
+        (1, _) => return Some(Node::above(scene, squares.iter().map(leaf).collect())),
+        _ => {}
     }
     let half = side / 2;
     let quarters = [[x, y], [x + half, y], [x, y + half], [x + half, y + half]];

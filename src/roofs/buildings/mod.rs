@@ -28,4 +28,5 @@ pub use refine::{
     TestedRelation, adjust_to_statements, cut_back_at_gaps, refine_roofs,
 };
 pub use refinement::{RefinementTrace, UnrefinedFacets, refine_buildings};
+pub(crate) use uncovered::ASKED_PROBABILITY;
 pub use uncovered::{UncoveredRoof, WhyUncovered, uncovered_roofs};

@@ -46,9 +46,7 @@ pub enum WhyUncovered {
 }
 
 /// From this probability on a person is asked: what is likelier no roof, but not by far.
-const ASKED_PROBABILITY: f64 = 0.1;
-/// A surface of dense matching is a building from this probability on.
-const BUILDING_PROBABILITY: f64 = 0.5;
+pub(crate) const ASKED_PROBABILITY: f64 = 0.1;
 
 /// The places where a roof may be and `model` has none, the largest first.
 pub fn uncovered_roofs(
@@ -114,7 +112,7 @@ fn of_surfaces(
         Some([at.x, at.y].map(|v| v.floor() as i64))
     };
     let middle = |[x, y]: [i64; 2]| Point2::new(x as f64 + 0.5, y as f64 + 0.5) * trace.spacing_m;
-    let is_building = |plane: &&DensePlane| plane.class.building >= BUILDING_PROBABILITY;
+    let is_building = |plane: &&DensePlane| plane.class.is_building();
     let buildings: Vec<&DensePlane> = planes.iter().filter(is_building).collect();
     let open = |plane: &&DensePlane| -> BTreeSet<[i64; 2]> {
         let cells = plane.patches.iter().filter_map(cell);

@@ -57,6 +57,8 @@ export interface WorkerCalls {
   exportProject(options: LoadOptions, shown: Uint8Array): Promise<Bytes>;
   /** The outcome of a tile, the `index`-th of `of`, as bytes, with its progress as that of `stage`. */
   runTile(stage: string, index: number, of: number): Promise<Bytes>;
+  /** What a square shows at a first look, the `index`-th of `of`, as bytes, with its progress as that of `stage`. */
+  lookAt(stage: string, index: number, of: number): Promise<Bytes>;
   tileModel(index: number, kept: Bytes): TileOutcome;
 }
 
@@ -78,6 +80,8 @@ type Inner =
   | "groundFiles"
   | "groundFilesOfLoad"
   | "viewFilesOfLoad"
+  | "groundFilesOfLook"
+  | "viewFilesOfLook"
   | "groundFilesOfTile"
   | "viewFilesOfTile"
   | "clearFiles"

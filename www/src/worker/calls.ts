@@ -55,6 +55,13 @@ export function workerCalls(
         () => session.runTile(index, (fraction) => onTileProgress((index + fraction) / of)),
       );
     },
+    lookAt: (stage, index, of) => {
+      const onLookProgress = throttled(stage, onProgress);
+      return files.withFilled(
+        [() => session.groundFilesOfLook(index), () => session.viewFilesOfLook(index)],
+        () => session.lookAt(index, (fraction) => onLookProgress((index + fraction) / of)),
+      );
+    },
     tileModel: (index, kept) => {
       const { report, glb } = session.tileModel(index, kept);
       return { report, glb: glb ?? null };

@@ -575,6 +575,25 @@ export class Session implements CoreSession {
     return [];
   }
 
+  squaresToLookAt(): number {
+    return 1;
+  }
+
+  groundFilesOfLook(): LackingFile[] {
+    return [];
+  }
+
+  viewFilesOfLook(): LackingFile[] {
+    return [];
+  }
+
+  lookAt(_index: number, onProgress: (fraction: number) => void): Uint8Array<ArrayBuffer> {
+    onProgress(1);
+    return new Uint8Array([1]);
+  }
+
+  takeLook(): void {}
+
   groundFilesOfTile(): LackingFile[] {
     return [];
   }

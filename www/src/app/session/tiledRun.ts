@@ -69,6 +69,7 @@ export async function runTiles(turn: Turn, tileM: number): Promise<void> {
 
 async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<TileReport[]> {
   const tiles = await engine.call("planTiles", tileOptions(), tileM, plannedHeights());
+  await lookFirst(turn, kept);
   const reports: TileReport[] = [];
   for (const index of tiles.keys()) {
     const secondsLeft = secondsPerMegapixel.value * megapixelsLeft();
@@ -95,6 +96,21 @@ async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<Tile
     await engine.callMoving([outcome.buffer], "takeTile", outcome);
   }
   return reports;
+}
+
+/** Looks at the whole area in small photographs: the tiles then work where a roof may be. */
+async function lookFirst(turn: Turn, kept: KeptTiles): Promise<void> {
+  const squares = await engine.call("squaresToLookAt");
+  for (let index = 0; index < squares; index++) {
+    turn.enter("run", "Looking for places where a roof may be");
+    const key = -1 - index;
+    let seen = await kept.read(key);
+    if (seen === null) {
+      seen = await engine.call("lookAt", STAGE, index, squares);
+      await kept.keep(key, seen);
+    }
+    await engine.callMoving([seen.buffer], "takeLook", seen);
+  }
 }
 
 /** What is kept of a tile; null where nothing is, or what another core would not take. */

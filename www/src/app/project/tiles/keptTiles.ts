@@ -3,7 +3,7 @@
 const DATABASE = "ridgeline-tiles";
 const STORE = "outcomes";
 
-/** Outcomes of one plan; those of another one are forgotten when the first is kept. */
+/** Outcomes of one plan, those of its first looks by the numbers below 0; those of another one are forgotten when the first is kept. */
 export class KeptTiles {
   readonly #plan: string;
   /** What could not be kept in the browser lasts as long as the page. */
@@ -18,9 +18,9 @@ export class KeptTiles {
   async tiles(): Promise<Set<number>> {
     try {
       const keys = await request<IDBValidKey[]>("readonly", (store) => store.getAllKeys());
-      return new Set(keys.flatMap((key) => this.#tileOf(key) ?? []));
+      return tilesOf(keys.flatMap((key) => this.#tileOf(key) ?? []));
     } catch {
-      return new Set(this.#beside.keys());
+      return tilesOf([...this.#beside.keys()]);
     }
   }
 
@@ -66,6 +66,10 @@ export class KeptTiles {
     const [plan, tile] = Array.isArray(key) ? key : [];
     return plan === this.#plan && typeof tile === "number" ? tile : null;
   }
+}
+
+function tilesOf(numbers: readonly number[]): Set<number> {
+  return new Set(numbers.filter((number) => number >= 0));
 }
 
 export async function forgetKeptTiles(): Promise<void> {
