@@ -19,12 +19,13 @@ use std::time::{Duration, Instant};
 use image::{DynamicImage, ImageFormat};
 use ridgeline::orienting::known::{Register, Terrain, WorldSystem};
 use ridgeline::orienting::orientation::InputFile;
-use ridgeline::orienting::orientation::{detect, orientation_sets};
+use ridgeline::orienting::orientation::{detect, epsg_of, orientation_sets, units_of};
 use ridgeline::orienting::scene_loader::{
     LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
 };
-use ridgeline::orienting::structure_from_motion::{GeoList, GroundControl};
+use ridgeline::orienting::structure_from_motion::{GeoList, GroundControl, PhotoMetadata};
 use ridgeline::photographs::raster::{image_header, load_image, load_window};
+use ridgeline::results::export::report_files;
 
 /// Longest time that one input may take: machines may be busy, but nothing hangs.
 const SLOWEST: Duration = Duration::from_secs(60);
@@ -187,6 +188,8 @@ fn read_archive(files: &[InputFile]) {
 
 fn read_image(files: &[InputFile]) {
     for file in files {
+        let stated = PhotoMetadata::read(&file.bytes, [64, 48]);
+        assert!(stated.height_m.is_none_or(f64::is_finite), "{stated:?}");
         check(image_header(&file.path, &file.bytes).map(|_| ()));
         check(load_image(&file.path, &file.bytes).map(|_| ()));
         if let Ok(header) = image_header(&file.path, &file.bytes) {
@@ -389,6 +392,7 @@ fn read_known(files: &[InputFile]) {
     };
     let origin = nalgebra::Vector3::new(432_100.0, 5_412_300.0, 0.0);
     for file in files {
+        let _ = report_files(&file.bytes);
         let terrain = Terrain::read(file, None, &system, origin, 0.3);
         if let Ok(terrain) = &terrain {
             let z = terrain.z_at(3.0, -2.0);
@@ -414,6 +418,9 @@ fn read_control(files: &[InputFile]) {
     for file in files {
         let head = file.head();
         let text = String::from_utf8_lossy(&head);
+        for line in text.lines() {
+            let _ = (epsg_of(line), units_of(line));
+        }
         check(GroundControl::read(&file.path, &text).map(|_| ()));
         check(GeoList::read(&file.path, &text).map(|_| ()));
     }
@@ -422,7 +429,7 @@ fn read_control(files: &[InputFile]) {
 #[test]
 fn lists_of_control_and_places_survive_anything() {
     let seeds: Vec<Vec<InputFile>> = files_of("control").into_iter().map(|f| vec![f]).collect();
-    assert_eq!(seeds.len(), 2);
+    assert_eq!(seeds.len(), 4);
     fuzz("control", &seeds, read_control);
 }
 
@@ -433,11 +440,37 @@ fn terrain_and_footprints_survive_anything() {
     fuzz("known", &seeds, read_known);
 }
 
+/// What programs write of the system beside an orientation.
+const SYSTEMS: [(&str, &str); 3] = [
+    (
+        "orientation.json",
+        r#"{"is_metric":true,"anchor":{"lon_deg":8.4,"lat_deg":49.0,"height_m":0.0},"epsg":25832,
+        "rays_a_point":3.1,"left_out":[]}"#,
+    ),
+    (
+        "site.prj",
+        r#"PROJCS["ETRS_1989_UTM_Zone_32N",GEOGCS["g",DATUM["D_ETRS_1989",SPHEROID["s",6378137,298]]],
+        PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",500000],PARAMETER["False_Northing",0],
+        PARAMETER["Central_Meridian",9],PARAMETER["Scale_Factor",0.9996],
+        PARAMETER["Latitude_Of_Origin",0],UNIT["Foot_US",0.3048006096012192]]"#,
+    ),
+    (
+        "reference_lla.json",
+        r#"{"latitude":49.0,"longitude":8.4,"altitude":0.0}"#,
+    ),
+];
+
 #[test]
 fn whole_scenes_survive_anything() {
+    let beside = |folder: &&str| -> Vec<InputFile> {
+        let file = |(name, text): (&str, &str)| {
+            InputFile::new(&format!("{folder}/{name}"), text.as_bytes().to_vec())
+        };
+        SYSTEMS.map(file).into()
+    };
     let scenes: Vec<Vec<InputFile>> = READERS
         .iter()
-        .map(|f| [files_of(f), files_of("images")].concat())
+        .map(|f| [files_of(f), files_of("images"), beside(f)].concat())
         .collect();
     fuzz("scene", &scenes, read_scene);
 }

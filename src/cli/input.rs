@@ -205,31 +205,18 @@ fn leave_out(files: &mut Vec<InputFile>, patterns: &[String]) -> ridgeline::Resu
 
 /// Does a name fit a pattern, where * stands for any letters and ? for one?
 fn fits(pattern: &str, name: &str) -> bool {
-    let (pattern, name): (Vec<char>, Vec<char>) =
-        (pattern.chars().collect(), name.chars().collect());
-    let (mut p, mut n) = (0, 0);
-    // Where the last * stands, and how far it reaches.
-    let mut star: Option<(usize, usize)> = None;
-    while n < name.len() {
-        match pattern.get(p) {
-            Some('*') => {
-                star = Some((p, n));
-                p += 1;
-            }
-            Some(&c) if c == '?' || c == name[n] => {
-                p += 1;
-                n += 1;
-            }
-            _ => {
-                let Some((at, reach)) = star else {
-                    return false;
-                };
-                star = Some((at, reach + 1));
-                (p, n) = (at + 1, reach + 1);
-            }
+    let mut rest = pattern.chars();
+    match (rest.next(), name.chars().next()) {
+        (None, first) => first.is_none(),
+        (Some('*'), first) => {
+            let after = first.map(|c| &name[c.len_utf8()..]);
+            fits(rest.as_str(), name) || after.is_some_and(|after| fits(pattern, after))
         }
+        (Some(c), Some(first)) => {
+            (c == '?' || c == first) && fits(rest.as_str(), &name[first.len_utf8()..])
+        }
+        (Some(_), None) => false,
     }
-    pattern[p..].iter().all(|c| *c == '*')
 }
 
 /// A path relative to the scene's folder, also where the whole path was given.

@@ -227,29 +227,22 @@ impl FolderWalk {
 
     /// A `.prj` belongs to the file of its name, though that is none that is read (a shapefile).
     fn leave_out_systems_of_unread(&mut self) {
-        let bare = |path: &str| {
-            path.rsplit_once('.')
-                .map_or(path, |(bare, _)| bare)
-                .to_owned()
+        let is_called = |path: &str, other: &str| {
+            Path::new(path).with_extension("") == Path::new(other).with_extension("")
         };
-        let mut read: BTreeMap<String, usize> = BTreeMap::new();
-        for file in &self.files.files {
-            *read.entry(bare(&file.path)).or_default() += 1;
-        }
-        let unread: BTreeMap<String, &String> = self
-            .unread
-            .iter()
-            .rev()
-            .map(|path| (bare(path), path))
-            .collect();
+        let read: Vec<String> = self.files.files.iter().map(|f| f.path.clone()).collect();
         let of_unread = &mut self.seen.of_unread;
         self.files.files.retain(|file| {
-            let name = bare(&file.path);
-            let of = unread.get(&name).filter(|_| read[&name] == 1);
-            let is_system = || detect(file) == FileKind::ReferenceSystem;
-            let of = of.filter(|_| {
-                extension(Path::new(&file.path)).as_deref() == Some("prj") && is_system()
-            });
+            let is_alone = || {
+                read.iter()
+                    .filter(|path| is_called(path, &file.path))
+                    .count()
+                    == 1
+            };
+            let is_system = extension(Path::new(&file.path)).as_deref() == Some("prj")
+                && detect(file) == FileKind::ReferenceSystem;
+            let mut unread = self.unread.iter().filter(|_| is_system && is_alone());
+            let of = unread.find(|path| is_called(path, &file.path));
             of_unread.extend(of.map(|of| format!("{} of {of}", file.path)));
             of.is_none()
         });

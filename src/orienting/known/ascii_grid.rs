@@ -9,6 +9,7 @@
 //!
 //! Of numbers "1,5" is one where no number of the file has a point.
 
+use std::collections::BTreeMap;
 use std::iter::Peekable;
 
 use super::height_grid::{HeightGrid, Placement, StoredHeights};
@@ -17,87 +18,56 @@ use super::system::Way;
 use crate::base::error::{Error, Result};
 use crate::orienting::orientation::InputFile;
 
-/// Does a file begin as such a grid does?
-pub(super) fn is_ascii_grid(file: &InputFile) -> bool {
-    let head = file.start_as_text(64);
-    let text = head.unwrap_or_default();
-    let text = text.trim_start_matches('\u{feff}').trim_start();
-    text.get(..5)
-        .is_some_and(|word| word.eq_ignore_ascii_case("ncols"))
-}
-
-/// What the header states.
-#[derive(Default)]
-struct Header {
-    columns: Option<f64>,
-    rows: Option<f64>,
-    /// West and south, and whether of the centre of a cell rather than its corner.
-    x: Option<(f64, bool)>,
-    y: Option<(f64, bool)>,
-    cell: [Option<f64>; 2],
-    no_data: Option<f64>,
-}
-
-impl Header {
-    /// Takes an entry; `None` where it is of no header.
-    fn take(&mut self, name: &str, value: f64) -> Option<()> {
-        match name.to_ascii_lowercase().as_str() {
-            "ncols" => self.columns = Some(value),
-            "nrows" => self.rows = Some(value),
-            "xllcorner" => self.x = Some((value, false)),
-            "xllcenter" => self.x = Some((value, true)),
-            "yllcorner" => self.y = Some((value, false)),
-            "yllcenter" => self.y = Some((value, true)),
-            "cellsize" => self.cell = [Some(value); 2],
-            "dx" => self.cell[0] = Some(value),
-            "dy" => self.cell[1] = Some(value),
-            "nodata_value" => self.no_data = Some(value),
-            _ => return None,
-        }
-        Some(())
-    }
-}
+/// What a header may state, by its name in small letters.
+const NAMES: [&str; 10] = [
+    "ncols",
+    "nrows",
+    "xllcorner",
+    "xllcenter",
+    "yllcorner",
+    "yllcenter",
+    "cellsize",
+    "dx",
+    "dy",
+    "nodata_value",
+];
 
 pub(super) fn read(file: &InputFile, way: Way) -> Result<HeightGrid> {
     let text = file.text();
-    let text = text.trim_start_matches('\u{feff}');
     let text = match text.contains(',') && !text.contains('.') {
         true => text.replace(',', "."),
-        false => text.to_owned(),
+        false => text.into_owned(),
     };
     let mut lines = text.lines().enumerate().peekable();
     let header = read_header(file, &mut lines)?;
-    let missing = |name: &str| {
-        let problem = format!("the header states no {name}");
-        refuse(file, 1, problem, "the header of an ASCII grid")
+    let stated = |name: &str| header.get(name).copied();
+    let number = |name: &str| {
+        stated(name).ok_or_else(|| {
+            let problem = format!("the header states no {name}");
+            refuse(file, 1, problem, "the header of an ASCII grid")
+        })
     };
-    let count = |stated: Option<f64>, name: &str| {
-        let count = stated.ok_or_else(|| missing(name))?;
+    let count = |name: &str| {
+        let count = number(name)?;
         let is_count = (2.0..1e6).contains(&count) && count.fract() == 0.0;
         let problem = || format!("{name} is {count}");
         is_count
             .then_some(count as usize)
             .ok_or_else(|| refuse(file, 1, problem(), "a whole number from 2"))
     };
-    let (columns, rows) = (
-        count(header.columns, "ncols")?,
-        count(header.rows, "nrows")?,
-    );
-    let cell = [
-        header.cell[0].ok_or_else(|| missing("cellsize"))?,
-        header.cell[1].ok_or_else(|| missing("cellsize"))?,
-    ];
-    let (x, x_is_center) = header.x.ok_or_else(|| missing("xllcorner"))?;
-    let (y, y_is_center) = header.y.ok_or_else(|| missing("yllcorner"))?;
+    let (columns, rows) = (count("ncols")?, count("nrows")?);
+    let cell = |own: &str| stated(own).map_or_else(|| number("cellsize"), Ok);
+    let cell = [cell("dx")?, cell("dy")?];
+    let center = |center: &str, corner: &str, cell: f64| match stated(center) {
+        Some(at) => Ok(at),
+        None => number(corner).map(|at| at + 0.5 * cell),
+    };
+    let west = center("xllcenter", "xllcorner", cell[0])?;
+    let south = center("yllcenter", "yllcorner", cell[1])?;
     let heights = read_heights(file, lines, [columns, rows], text.lines().count())?;
-    let corner =
-        |at: f64, is_center: bool, cell: f64| at + if is_center { 0.0 } else { 0.5 * cell };
-    let first = [
-        corner(x, x_is_center, cell[0]),
-        corner(y, y_is_center, cell[1]) + (rows - 1) as f64 * cell[1],
-    ];
+    let first = [west, south + (rows - 1) as f64 * cell[1]];
     // Heights are read as they are written: the value that stands for none as well.
-    let no_data = header.no_data.unwrap_or(-9999.0) as f32;
+    let no_data = stated("nodata_value").unwrap_or(-9999.0) as f32;
     let place = Placement {
         first,
         cell,
@@ -125,16 +95,16 @@ fn refuse(file: &InputFile, line: usize, problem: String, expected: &str) -> Err
 fn read_header<'a>(
     file: &InputFile,
     lines: &mut Peekable<impl Iterator<Item = (usize, &'a str)>>,
-) -> Result<Header> {
-    let mut header = Header::default();
+) -> Result<BTreeMap<String, f64>> {
+    let mut header = BTreeMap::new();
     while let Some((i, line)) = lines.peek().copied() {
         let mut words = line.split_whitespace();
         let Some(name) = words.next() else {
             lines.next();
             continue;
         };
-        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || name.eq_ignore_ascii_case("nan")
-        {
+        let known = name.to_ascii_lowercase();
+        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || known.starts_with("nan") {
             break;
         }
         let value = words.next().and_then(|word| word.parse().ok());
@@ -142,11 +112,12 @@ fn read_header<'a>(
             let problem = format!("'{name}' has no number");
             refuse(file, i + 1, problem, "a name and a number")
         })?;
-        header.take(name, value).ok_or_else(|| {
+        if !NAMES.contains(&&*known) {
             let problem = format!("'{name}' is no part of the header");
             let expected = "ncols, nrows, xllcorner, yllcorner, cellsize or NODATA_value";
-            refuse(file, i + 1, problem, expected)
-        })?;
+            return Err(refuse(file, i + 1, problem, expected));
+        }
+        header.insert(known, value);
         lines.next();
     }
     Ok(header)
@@ -164,7 +135,10 @@ fn read_heights<'a>(
     let mut heights: Vec<f32> = Vec::new();
     for (i, line) in lines {
         for word in line.split_whitespace() {
-            let z = word.parse().map_err(|_| {
+            // As the runtime of Microsoft's compilers writes what is no number.
+            let is_none = word.contains('#') || word.to_ascii_lowercase().contains("nan");
+            let z = if is_none { Ok(f32::NAN) } else { word.parse() };
+            let z = z.map_err(|_| {
                 let problem = format!("'{word}' is no number");
                 refuse(file, i + 1, problem, "heights with a decimal point")
             })?;

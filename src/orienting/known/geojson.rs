@@ -74,7 +74,11 @@ pub(super) fn read(
 
 /// The system of GeoJSON 2008's member, or of the form before that (`"type": "EPSG"`).
 fn stated_of(crs: &Value) -> Option<StatedSystem> {
-    let properties = &crs["properties"];
+    // PROJJSON has its code in `id`.
+    let properties = match &crs["id"] {
+        Value::Null => &crs["properties"],
+        id => id,
+    };
     match (
         crs.as_str().or(properties["name"].as_str()),
         &properties["code"],

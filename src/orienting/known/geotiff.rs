@@ -1,16 +1,13 @@
 //! GeoTIFF of heights (OGC 19-008): one band of numbers, its place in the tags, and what GDAL
 //! writes of the band: unit, scale and offset.
 
-use super::geo_keys;
+use super::geo_keys::{self, GeoKeys};
 use super::height_grid::{HeightGrid, Placement, StoredHeights};
 use super::refusal::refusal;
 use super::system::{StatedPlan, StatedSystem, WorldSystem};
 use crate::base::error::Result;
 use crate::orienting::orientation::{InputFile, LinearUnit};
 use crate::photographs::raster::{Directory, NumberRaster, tiff_tags as tags};
-
-/// The key by which coordinates are of the corner or of the centre of a cell.
-const RASTER_TYPE: u64 = 1025;
 
 /// Reads a GeoTIFF; `beside` is the system that a file of its name states.
 pub(super) fn read(
@@ -27,9 +24,11 @@ pub(super) fn read(
     let raster = NumberRaster::read(&file.path, file.content())?;
     let reproject = "convert it with gdalwarp to the system of the orientation, in metres";
     let keys = raster.directory.numbers(tags::GEO_KEY_DIRECTORY);
-    let keys = keys.unwrap_or_default();
-    let key = |key: u64| geo_keys::value(&keys, key);
-    let stated = geo_keys::stated(key).map_err(|problem| refuse(&problem, reproject))?;
+    let keys = GeoKeys {
+        directory: &keys.unwrap_or_default(),
+        texts: raster.directory.raw(geo_keys::TEXTS).unwrap_or_default(),
+    };
+    let stated = geo_keys::stated(&keys).map_err(|problem| refuse(&problem, reproject))?;
     let mut stated = match beside {
         Some(beside) if stated.plan == StatedPlan::Unstated => beside,
         _ => stated,
@@ -42,11 +41,7 @@ pub(super) fn read(
     let way = way.map_err(|problem| refuse(&problem, reproject))?;
     let (corner, cell) = placed(&raster.directory).map_err(|problem| refuse(problem, place))?;
     // Coordinates are of the corner of a cell, unless the file says that they are of its centre.
-    let half = if key(RASTER_TYPE) == Some(2) {
-        0.0
-    } else {
-        0.5
-    };
+    let half = if keys.is_of_centres() { 0.0 } else { 0.5 };
     let no_data = raster.directory.raw(tags::GDAL_NO_DATA);
     let no_data = no_data.and_then(|text| std::str::from_utf8(text).ok());
     let no_data = no_data.and_then(|text| text.trim_matches(['\0', ' ']).parse::<f64>().ok());

@@ -18,29 +18,33 @@ pub(super) fn begins(text: &str) -> bool {
 
 /// The value of a file.
 pub(super) fn read(file: &InputFile) -> Result<Value> {
-    let text = file.text();
-    let refuse = |line: usize| Error::Line {
+    json_of(&file.text()).map_err(|line| Error::Line {
         file: file.path.clone(),
         line,
         problem: "it is no JSON".to_owned(),
         expected: "GeoJSON or CityJSON, or one feature a line".to_owned(),
-    };
+    })
+}
+
+/// The value of a text; otherwise the line that is damaged.
+pub(crate) fn json_of(text: &str) -> std::result::Result<Value, usize> {
     let whole = text.trim_start_matches(is_before);
     let skipped = text[..text.len() - whole.len()].matches('\n').count();
     let problem = match serde_json::from_str(whole) {
         Ok(value) => return Ok(value),
         Err(problem) => problem,
     };
-    let values: Option<Vec<Value>> = (whole.lines())
-        .map(|line| line.trim_matches(is_before))
-        .filter(|line| !line.is_empty())
-        .map(|line| serde_json::from_str(line).ok())
-        .collect();
-    // A value that is damaged is so at its own line.
-    let values = match values {
-        Some(values) => values,
-        None => return Err(refuse(skipped + line_of(whole).unwrap_or(problem.line()))),
-    };
+    let mut values: Vec<Value> = Vec::new();
+    for (i, line) in whole.lines().enumerate() {
+        let line = line.trim_matches(is_before);
+        match serde_json::from_str(line) {
+            Ok(value) => values.push(value),
+            Err(_) if line.is_empty() => {}
+            // A value that is damaged is so at its own line.
+            Err(_) if values.is_empty() => return Err(skipped + problem.line()),
+            Err(_) => return Err(skipped + i + 1),
+        }
+    }
     Ok(
         match values
             .first()
@@ -58,16 +62,6 @@ pub(super) fn read(file: &InputFile) -> Result<Value> {
             }
         },
     )
-}
-
-/// The first line that is no value, where the first one is: else the file is none of lines.
-fn line_of(text: &str) -> Option<usize> {
-    let is_value = |line: &str| {
-        let line = line.trim_matches(is_before);
-        line.is_empty() || serde_json::from_str::<serde::de::IgnoredAny>(line).is_ok()
-    };
-    let bad = text.lines().position(|line| !is_value(line))?;
-    (bad > 0 && text.lines().next().is_some_and(is_value)).then_some(bad + 1)
 }
 
 /// CityJSONSeq: a head with the transform, then features with vertices of their own.

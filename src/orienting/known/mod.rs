@@ -40,6 +40,7 @@ pub use comparison::{KnownComparison, KnownShift, KnownThing, KnownVerdict, MOST
 pub(crate) use comparison::{belongs_here, best_shift};
 pub use footprint::Footprint;
 pub use height_grid::HeightGrid;
+pub(crate) use json_lines::json_of;
 use system::StatedSystem;
 pub use system::WorldSystem;
 
@@ -49,7 +50,7 @@ use nalgebra::{Point2, Point3, Vector3};
 
 use self::refusal::refusal;
 use crate::base::error::Result;
-use crate::orienting::orientation::{InputFile, POINT_CLOUD};
+use crate::orienting::orientation::{InputFile, POINT_CLOUD, is_ascii_grid};
 
 /// What is known of a scene; frame and units of the scene.
 #[derive(Clone, Debug, Default)]
@@ -158,7 +159,7 @@ impl Terrain {
             geotiff::read(file, system, beside)?
         } else if file.bytes.starts_with(POINT_CLOUD) {
             point_cloud::read(file, system)?
-        } else if ascii_grid::is_ascii_grid(file) {
+        } else if (file.start_as_text(64)).is_some_and(|text| is_ascii_grid(&text)) {
             let stated = beside.unwrap_or_else(StatedSystem::unstated);
             let way = system.way_from(&stated).map_err(|problem| {
                 refusal(

@@ -22,8 +22,6 @@ pub(super) struct StatedSystem {
 pub(super) enum StatedPlan {
     /// Nothing: they are those of the scene.
     Unstated,
-    /// Longitude and latitude on WGS84.
-    LongitudeLatitude,
     /// EPSG code of their system.
     Code(u32),
     /// A system that is named, but not by a code.
@@ -56,14 +54,11 @@ impl StatedSystem {
     }
 
     pub(super) fn longitude_latitude() -> Self {
-        StatedPlan::LongitudeLatitude.into()
+        StatedPlan::Code(4326).into()
     }
 
     /// By the text of a name, an address, or well-known text.
     pub(super) fn named(text: &str) -> Self {
-        if text.contains("CRS84") {
-            return Self::longitude_latitude();
-        }
         let plan = epsg_of(text).map_or_else(
             || StatedPlan::Other(text.chars().take(80).collect()),
             StatedPlan::Code,
@@ -88,17 +83,12 @@ impl StatedSystem {
 
     /// Are coordinates longitude and latitude, in this order?
     fn is_geographic(&self) -> bool {
-        match self.plan {
-            StatedPlan::LongitudeLatitude => true,
-            StatedPlan::Code(code) => is_geographic(code),
-            StatedPlan::Unstated | StatedPlan::Other(_) => false,
-        }
+        matches!(self.plan, StatedPlan::Code(code) if is_geographic(code))
     }
 
     fn describe(&self) -> String {
         match &self.plan {
             StatedPlan::Unstated => "no stated system".to_owned(),
-            StatedPlan::LongitudeLatitude => "longitude and latitude".to_owned(),
             StatedPlan::Code(code) if is_geographic(*code) => {
                 format!("longitude and latitude (EPSG:{code})")
             }

@@ -1,6 +1,7 @@
 //! Planted grids and footprints, through all readers; and what is refused.
 
 mod forms;
+mod further;
 
 use nalgebra::{Point2, Vector3};
 

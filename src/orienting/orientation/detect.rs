@@ -166,7 +166,7 @@ pub fn detect(file: &InputFile) -> FileKind {
     if let Some(text) = file.start_as_text(HEAD_BYTES) {
         // Lines of GeoJSON may each have a record separator before them (RFC 8142).
         if text
-            .trim_start_matches(['\u{feff}', '\u{1e}'])
+            .trim_start_matches('\u{1e}')
             .trim_start()
             .starts_with(['{', '['])
         {
@@ -193,7 +193,7 @@ pub fn detect(file: &InputFile) -> FileKind {
 }
 
 fn by_content(text: &str) -> Option<FileKind> {
-    let trimmed = text.trim_start_matches('\u{feff}').trim_start();
+    let trimmed = text.trim_start();
     match trimmed.starts_with('<') {
         true => by_tags(trimmed),
         false => by_words(text, trimmed).or_else(|| by_lines(text)),
@@ -215,10 +215,7 @@ fn by_words(text: &str, trimmed: &str) -> Option<FileKind> {
     {
         return Some(FileKind::ReferenceSystem);
     }
-    if trimmed
-        .get(..5)
-        .is_some_and(|word| word.eq_ignore_ascii_case("ncols"))
-    {
+    if is_ascii_grid(trimmed) {
         return Some(FileKind::Terrain);
     }
     if trimmed.starts_with("NVM_V3") {
@@ -234,6 +231,14 @@ fn by_words(text: &str, trimmed: &str) -> Option<FileKind> {
         return Some(FileKind::PhotogrammetricCamera);
     }
     None
+}
+
+/// Does a text begin as an ASCII grid of ESRI does?
+pub(crate) fn is_ascii_grid(text: &str) -> bool {
+    let first = text.split_whitespace().next().unwrap_or_default();
+    ["ncols", "nrows"]
+        .iter()
+        .any(|name| first.eq_ignore_ascii_case(name))
 }
 
 /// By how many numbers its first lines hold.

@@ -253,8 +253,10 @@ impl InputFile {
     }
 }
 
-/// Text of UTF-8, of UTF-16 with a byte order mark (Windows' "Unicode"), or of Windows-1252.
+/// Text of UTF-8, of UTF-16 with a byte order mark (Windows' "Unicode"), or of Windows-1252;
+/// without its mark.
 fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     let text = match (utf16(bytes), std::str::from_utf8(bytes)) {
         (Some(text), _) => Cow::Owned(text),
         (None, Ok(text)) => Cow::Borrowed(text),

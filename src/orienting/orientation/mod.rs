@@ -64,7 +64,7 @@ pub use angles::{
     rotation_from_yaw_pitch_roll,
 };
 pub use detect::{FileKind, detect};
-pub(crate) use detect::{GCP_LIST, GEO_LIST, POINT_CLOUD};
+pub(crate) use detect::{GCP_LIST, GEO_LIST, POINT_CLOUD, is_ascii_grid};
 pub(crate) use epsg::{TransverseMercator, is_geographic, plane_of};
 pub use format::Format;
 pub use geodesy::Anchor;

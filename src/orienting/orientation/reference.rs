@@ -1,5 +1,6 @@
 //! The coordinate reference system that files name, as its EPSG code.
 
+use super::epsg::is_geographic;
 use super::geodesy::Anchor;
 use super::well_known;
 
@@ -48,8 +49,9 @@ pub(super) fn of_orient(text: &str) -> StatedReference {
 pub(crate) fn of_inpho(text: &str) -> StatedReference {
     let after = text.split("$COORDINATE_SYSTEM").nth(1);
     let part = after.and_then(|after| after.split('$').next());
-    part.and_then(epsg_of)
-        .map_or(StatedReference::None, StatedReference::System)
+    // Its coordinates are lengths, though a datum alone may be named.
+    let code = part.and_then(epsg_of).filter(|&code| !is_geographic(code));
+    code.map_or(StatedReference::None, StatedReference::System)
 }
 
 /// EPSG code of a system written as well-known text, as PROJ's string, as "EPSG:25832", in any of
@@ -115,6 +117,57 @@ mod tests {
     }
 
     #[test]
+    fn what_orient_found_is_read_in_the_forms_that_editors_leave() {
+        let at = |lon_deg: f64, lat_deg: f64, height_m: f64| {
+            StatedReference::Place(Anchor {
+                lon_deg,
+                lat_deg,
+                height_m,
+            })
+        };
+        let place = r#""anchor":{"lon_deg":8.4,"lat_deg":49.0,"height_m":0.0}"#;
+        let whole = r#""anchor":{"lon_deg":-8,"lat_deg":-49,"height_m":12}"#;
+        let code = |code: u32| format!(r#"{{"is_metric":true,"epsg":{code}}}"#);
+        for (text, stated) in [
+            (
+                format!(r#"{{"is_metric":true,{place},"epsg":null}}"#),
+                at(8.4, 49.0, 0.0),
+            ),
+            (
+                format!("{{\r\n \"is_metric\": true,\r\n {place},\r\n \"more\": [1]}}\r\n"),
+                at(8.4, 49.0, 0.0),
+            ),
+            (
+                format!(r#"{{{whole},"is_metric":true}}"#),
+                at(-8.0, -49.0, 12.0),
+            ),
+            (
+                format!(r#"{{"unit_m":1.0,{place},"is_metric":true}}"#),
+                at(8.4, 49.0, 0.0),
+            ),
+            (code(25832), StatedReference::System(25832)),
+            (code(2249), StatedReference::System(2249)),
+            (
+                r#"{"is_metric":true,"anchor":null,"epsg":null}"#.to_owned(),
+                StatedReference::None,
+            ),
+            (r#"{"is_metric":true}"#.to_owned(), StatedReference::None),
+            (r#"{"is_metric":true,"#.to_owned(), StatedReference::None),
+            (
+                r#"{"is_metric":true,"epsg":"25832"}"#.to_owned(),
+                StatedReference::None,
+            ),
+        ] {
+            assert_eq!(of_orient(&text), stated, "{text}");
+        }
+        let without_scale = format!(r#"{{"is_metric":false,{place}}}"#);
+        assert!(matches!(
+            of_orient(&without_scale),
+            StatedReference::Local(_)
+        ));
+    }
+
+    #[test]
     fn codes_of_parts_are_not_those_of_the_system() {
         let plane = r#"PROJCS["x",GEOGCS["y",AUTHORITY["EPSG","4258"]],UNIT["metre",1,AUTHORITY["EPSG","9001"]]@]"#;
         let with = |own: &str| plane.replace('@', own);
@@ -175,6 +228,29 @@ mod tests {
             ("urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837".to_owned(), Some(25832)),
             ("urn:ogc:def:crs:EPSG:10.0:2056".to_owned(), Some(2056)),
             ("http://www.opengis.net/gml/srs/epsg.xml#3006".to_owned(), Some(3006)),
+            (format!("ESRI PE String = {}", esri("D_North_American_1983", "-75", "1", "500000")), Some(32618)),
+            (esri("D_WGS_1984", "9", "1", "500000").to_lowercase(), Some(32632)),
+            ("BOUNDCRS[SOURCECRS[PROJCRS[\"d\",ID[\"EPSG\",31467]]],TARGETCRS[GEOGCRS[\"w\",ID[\"EPSG\",4326]]]]".to_owned(), Some(31467)),
+            ("COMPOUNDCRS[\"c\",PROJCRS[\"p\",ID[\"EPSG\",25832]],VERTCRS[\"v\",ID[\"EPSG\",7837]]]".to_owned(), Some(25832)),
+            ("+proj=utm +zone=33 +datum=WGS84 +units=us-ft".to_owned(), Some(32633)),
+            ("+init=epsg:2056 +type=crs".to_owned(), Some(2056)),
+            ("WGS 84 / UTM zone 32N".to_owned(), Some(32632)),
+            ("UTM Zone 7 S, WGS84".to_owned(), Some(32707)),
+            ("PCS Name = NAD_1983_UTM_Zone_10N|".to_owned(), Some(32610)),
+            ("ETRS89 / UTM zone 32N + DHHN2016 height".to_owned(), Some(32632)),
+            ("SIRGAS 2000 / UTM zone 23S".to_owned(), Some(32723)),
+            ("NAD83(2011) / UTM zone 14N".to_owned(), Some(32614)),
+            ("WGS84".to_owned(), Some(4326)),
+            ("urn:ogc:def:crs:OGC::CRS84".to_owned(), Some(4326)),
+            // Other planes: zones before the easting, feet, another datum, no datum.
+            ("ETRS89 / UTM zone 32N (zE-N)".to_owned(), None),
+            ("NAD83 / UTM zone 14N (ftUS)".to_owned(), None),
+            ("NAD27 / UTM zone 14N".to_owned(), None),
+            ("ED50 / UTM zone 32N".to_owned(), None),
+            ("UTM zone 32N".to_owned(), None),
+            ("WGS 84 / UTM zone 61N".to_owned(), None),
+            ("IGNF:LAMB93".to_owned(), None),
+            ("ESRI:102100".to_owned(), None),
         ] {
             assert_eq!(epsg_of(&text), code, "{text}");
         }
@@ -182,7 +258,7 @@ mod tests {
 
     #[test]
     fn codes_stand_for_planes() {
-        use crate::orienting::orientation::{is_geographic, plane_of};
+        use crate::orienting::orientation::plane_of;
         for (a, b) in [
             (25832, 5555),
             (28992, 7415),
@@ -196,6 +272,13 @@ mod tests {
             (25833, 3045),
             (31983, 32723),
             (6677, 2451),
+            (3157, 32610),
+            (6339, 26910),
+            (7856, 28356),
+            (3067, 25835),
+            (5554, 25831),
+            (3044, 25832),
+            (6346, 32617),
         ] {
             assert_eq!(plane_of(a), plane_of(b), "{a} {b}");
         }
@@ -209,6 +292,10 @@ mod tests {
             (4647, 25832),
             (3857, 4326),
             (23032, 25832),
+            (3035, 25832),
+            (26714, 26914),
+            (2180, 2177),
+            (31984, 32723),
         ] {
             assert_ne!(plane_of(a), plane_of(b), "{a} {b}");
         }

@@ -1,5 +1,5 @@
 //! The code of a reference system that is written out: well-known text (of OGC 01-009 as of ISO
-//! 19162, also ESRI's, which has no codes) and PROJ's strings.
+//! 19162, also ESRI's, which has no codes), PROJ's strings, and names of systems of a global datum.
 
 use super::epsg;
 use super::epsg::TransverseMercator;
@@ -25,10 +25,45 @@ const PLANES: [&str; 8] = [
 
 /// The code that a system states, else that of the same projection of a datum that counts as WGS84.
 pub(super) fn code_of(text: &str) -> Option<u32> {
-    match text.contains("+proj") {
-        true => of_proj(text),
-        false => of_text(&nodes(text)),
+    if text.contains('[') {
+        of_text(&nodes(text))
+    } else if text.contains("+proj") {
+        of_proj(text)
+    } else {
+        of_name(&plain(text))
     }
+}
+
+/// Metres in the unit of lengths of the first part of these names that states one.
+pub(super) fn unit_of_first(text: &str, names: &[&str]) -> Option<f64> {
+    let nodes = nodes(text);
+    let mut parts = (0..nodes.len()).filter(|&i| is_called(&nodes[i], names));
+    parts.find_map(|i| unit(&nodes, i))
+}
+
+/// The code of a name, plain: "WGS 84 / UTM zone 32N", "NAD_1983_UTM_Zone_10N", "WGS84".
+fn of_name(name: &str) -> Option<u32> {
+    const DEGREES: [&str; 4] = ["WGS84", "GCSWGS1984", "ETRS89", "NAD83"];
+    if DEGREES.contains(&name) || name.contains("CRS84") {
+        return Some(epsg::GEOGRAPHIC);
+    }
+    let (datum, after) = name.split_once("UTM")?;
+    let zone = after.strip_prefix("ZONE").unwrap_or(after);
+    let end = zone
+        .find(|c: char| !c.is_ascii_digit())
+        .unwrap_or(zone.len());
+    let (number, side) = zone.split_at(end);
+    let first = if side.starts_with('S') {
+        32_700
+    } else {
+        32_600
+    };
+    // Zones before the easting, northings first or feet are other planes.
+    let is_other = ["ZE", "FT"]
+        .iter()
+        .any(|other| side.get(1..).is_some_and(|s| s.starts_with(other)));
+    let zone: u32 = number.parse().ok().filter(|zone| (1..=60).contains(zone))?;
+    (!is_other && (is_global(datum) || is_global(side))).then_some(first + zone)
 }
 
 /// The brackets of a text in their order, each after that which holds it.
@@ -112,9 +147,6 @@ fn of_text(nodes: &[Node]) -> Option<u32> {
 
 /// Metres in the unit of lengths of a part; it stands in it, or in its axes.
 fn unit(nodes: &[Node], of: usize) -> Option<f64> {
-    if nodes[of].name.to_ascii_uppercase().starts_with("GEO") {
-        return None;
-    }
     const UNITS: [&str; 2] = ["UNIT", "LENGTHUNIT"];
     let axes = inside(nodes, of, &["AXIS"]);
     let of_axes = axes.flat_map(|(axis, _)| inside(nodes, axis, &UNITS));
@@ -191,17 +223,18 @@ fn is_global(datum: &str) -> bool {
     GLOBAL.iter().any(|name| datum.contains(name))
 }
 
+/// What PROJ's string states of a name.
+pub(super) fn proj_value<'a>(text: &'a str, name: &str) -> Option<&'a str> {
+    let mut words = (text.split_whitespace()).filter_map(|word| word.strip_prefix('+'));
+    words.find_map(|word| {
+        let (key, value) = word.split_once('=').unwrap_or((word, ""));
+        (key == name).then_some(value)
+    })
+}
+
 /// The code of PROJ's string.
 fn of_proj(text: &str) -> Option<u32> {
-    let value = |name: &str| {
-        let mut words = text
-            .split_whitespace()
-            .filter_map(|word| word.strip_prefix('+'));
-        words.find_map(|word| {
-            let (key, value) = word.split_once('=').unwrap_or((word, ""));
-            (key == name).then_some(value)
-        })
-    };
+    let value = |name: &str| proj_value(text, name);
     let number = |name: &str| value(name)?.parse::<f64>().ok();
     let datum = plain(value("datum").or(value("ellps"))?);
     let is_shifted = (value("towgs84")).is_some_and(|by| by.contains(|c| ('1'..='9').contains(&c)));

@@ -15,6 +15,17 @@ pub(super) struct Similarity {
     pub shift: Vector3<f64>,
 }
 
+impl Default for Similarity {
+    /// Everything stays where it is.
+    fn default() -> Self {
+        Self {
+            scale: 1.0,
+            rotation: Rotation3::identity(),
+            shift: Vector3::zeros(),
+        }
+    }
+}
+
 /// The weighted mean of points.
 fn middle(points: &[Point3<f64>], weights: &[f64]) -> Vector3<f64> {
     let weighted = points.iter().zip(weights).map(|(p, w)| p.coords * *w);

@@ -1,6 +1,6 @@
 //! What a LAS file states of itself, at fixed places of its header and in its variable records.
 
-use crate::orienting::known::geo_keys;
+use crate::orienting::known::geo_keys::{self, GeoKeys};
 use crate::orienting::known::system::StatedSystem;
 
 /// The header as far as it is used.
@@ -129,13 +129,17 @@ impl Header {
                 return Ok(StatedSystem::named(text));
             }
         }
-        let Some(keys) = self.variable_record(bytes, PROJECTION, GEO_KEYS) else {
-            return Ok(StatedSystem::unstated());
+        let record = |number| {
+            self.variable_record(bytes, PROJECTION, number)
+                .unwrap_or_default()
         };
-        let keys: Vec<u64> = (keys.chunks_exact(2))
+        let directory: Vec<u64> = (record(GEO_KEYS).chunks_exact(2))
             .map(|pair| u64::from(u16_at(pair, 0)))
             .collect();
-        geo_keys::stated(|wanted| geo_keys::value(&keys, wanted))
+        geo_keys::stated(&GeoKeys {
+            directory: &directory,
+            texts: record(geo_keys::TEXTS),
+        })
     }
 
     /// What a variable record of this owner and number holds, extended or not.

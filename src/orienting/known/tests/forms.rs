@@ -156,7 +156,7 @@ fn a_survey_area_is_no_building() {
 }
 
 /// Tags of a band as GDAL writes them.
-fn band(items: &[(&str, &str)]) -> Tag {
+pub(super) fn band(items: &[(&str, &str)]) -> Tag {
     let item = |(role, text): &(&str, &str)| {
         format!("<Item name=\"{role}\" sample=\"0\" role=\"{role}\">{text}</Item>")
     };
@@ -166,7 +166,7 @@ fn band(items: &[(&str, &str)]) -> Tag {
 }
 
 /// The planted raster with heights in this unit less `offset`, and these keys and tags.
-fn raster_in(unit_m: f64, offset: f64, keys: &[[u16; 2]], more: Vec<Tag>) -> InputFile {
+pub(super) fn raster_in(unit_m: f64, offset: f64, keys: &[[u16; 2]], more: Vec<Tag>) -> InputFile {
     let place = placed(false).into_iter().take(2);
     let mut tiff = PlantedTiff::strip(place.chain([geo_keys(keys)]).chain(more).collect());
     let stored = |z: &f32| (((f64::from(*z) - offset) / unit_m) as f32).to_le_bytes();
@@ -302,7 +302,7 @@ fn ascii_grids_of_other_programs_are_read() {
 }
 
 /// The planted heights with a hole of these columns and rows.
-fn with_hole(
+pub(super) fn with_hole(
     columns: std::ops::Range<usize>,
     rows: std::ops::Range<usize>,
     filler: &str,

@@ -70,13 +70,11 @@ pub fn height_unit_of_code(code: u32) -> Option<LinearUnit> {
 /// Units that a text states of a coordinate system; `None` where it names no system. What a text
 /// says itself counts before its code.
 pub fn units_of(text: &str) -> Option<SystemUnits> {
-    let stated = text::stated(text);
+    let (plan, height) = text::stated(text);
     let of_code = codes_in(text);
-    let plan = stated.plan.or(of_code.map(|units| units.plan))?;
-    let of_code = of_code.and_then(|units| units.height);
     Some(SystemUnits {
-        plan,
-        height: stated.height.or(of_code),
+        plan: plan.or(of_code.map(|units| units.plan))?,
+        height: height.or(of_code.and_then(|units| units.height)),
     })
 }
 
@@ -85,12 +83,8 @@ fn codes_in(text: &str) -> Option<SystemUnits> {
     let mut units = units_of_code(epsg_of(text)?);
     if !text.contains('[') {
         let numbers = text.split(|c: char| !c.is_ascii_digit());
-        let codes: Vec<u32> = numbers.filter_map(|n| n.parse().ok()).collect();
-        let is_height = |code: &u32| listed("height", *code).is_some();
-        if let (2.., Some(code)) = (codes.len(), codes.iter().find(|c| !is_height(c))) {
-            units.plan = units_of_code(*code).plan;
-        }
-        units.height = (codes.iter().rev()).find_map(|code| height_unit_of_code(*code));
+        let of_heights = |number: &str| height_unit_of_code(number.parse().ok()?);
+        units.height = numbers.rev().find_map(of_heights);
     }
     Some(units)
 }
@@ -149,6 +143,32 @@ mod tests {
     }
 
     #[test]
+    fn units_have_many_names() {
+        let us = LinearUnit::US_FOOT;
+        for (name, unit) in [
+            ("US survey foot", us),
+            ("U.S. Survey Feet", us),
+            ("Foot_US", us),
+            ("us-ft", us),
+            ("ftUS", us),
+            ("sft", us),
+            ("US Foot", us),
+            ("survey feet", us),
+            ("foot", LinearUnit::FOOT),
+            ("Feet (International)", LinearUnit::FOOT),
+            ("International Feet", LinearUnit::FOOT),
+            ("ft", LinearUnit::FOOT),
+            ("Meter", LinearUnit::METRE),
+            ("METRES", LinearUnit::METRE),
+        ] {
+            assert_eq!(LinearUnit::of_name(name), Some(unit), "{name}");
+        }
+        for other in ["fathom", "Clarke's foot", "Indian foot", "degree", ""] {
+            assert_eq!(LinearUnit::of_name(other), None, "{other}");
+        }
+    }
+
+    #[test]
     fn texts_state_their_units() {
         let us = 0.304_800_609_601_219;
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
@@ -165,6 +185,13 @@ mod tests {
             LENGTHUNIT[\"foot\",0.3048]],AXIS[\"n\",north,ORDER[2],LENGTHUNIT[\"foot\",0.3048]]]";
         let whole = "PROJCRS[\"p\",CS[Cartesian,2],AXIS[\"e\",east],AXIS[\"n\",north],\
             LENGTHUNIT[\"foot\",0.3048],ID[\"EPSG\",2868]]";
+        // ESRI puts heights beside the map, ISO inside of a compound.
+        let beside = format!(
+            "{wkt1},VERTCS[\"NAVD_1988_Foot_US\",VDATUM[\"v\"],PARAMETER[\"Direction\",1.0],UNIT[\"Foot_US\",0.3048006096012192]]"
+        );
+        let vertical = "COMPOUNDCRS[\"c\",PROJCRS[\"p\",CS[Cartesian,2],AXIS[\"e\",east],\
+            AXIS[\"n\",north],LENGTHUNIT[\"metre\",1]],VERTCRS[\"v\",CS[vertical,1],AXIS[\"h\",up,\
+            LENGTHUNIT[\"US survey foot\",0.304800609601219]]]]";
         for (text, plan, height) in [
             (wkt1, us, None),
             (&*compound, us, Some(us)),
@@ -191,6 +218,25 @@ mod tests {
                 Some(0.3048),
             ),
             ("EPSG:7415", 1.0, Some(1.0)),
+            ("https://www.opengis.net/def/crs/EPSG/0/2263", us, None),
+            ("urn:ogc:def:crs:EPSG:9.8.15:2263", us, None),
+            ("http://www.opengis.net/gml/srs/epsg.xml#2263", us, None),
+            ("EPSG:32610+8228", 1.0, Some(0.3048)),
+            ("EPSG:6559+EPSG:6360", 0.3048, Some(us)),
+            ("NAD_1983_UTM_Zone_10N", 1.0, None),
+            (&*beside, us, Some(us)),
+            (vertical, 1.0, Some(us)),
+            (
+                "+proj=utm +zone=10 +datum=WGS84 +units=ft +vunits=us-ft",
+                0.3048,
+                Some(us),
+            ),
+            (
+                "+proj=utm +zone=18 +datum=NAD83 +to_meter=0.3048006096012192",
+                us,
+                None,
+            ),
+            ("+proj=tmerc +lat_0=0 +units=km", 1000.0, None),
         ] {
             let found = metres(text).unwrap_or_else(|| panic!("{text}: none"));
             let is_same = near(found.0, plan)
@@ -200,14 +246,20 @@ mod tests {
                     .map_or(found.1 == height, |(a, b)| near(a, b));
             assert!(is_same, "{text}: {found:?}");
         }
-        for degrees in ["EPSG:4326", "+proj=longlat +datum=WGS84", "EPSG:6318"] {
+        for degrees in [
+            "EPSG:4326",
+            "+proj=longlat +datum=WGS84",
+            "EPSG:6318",
+            "WGS 84",
+            "OGC:CRS84",
+        ] {
             let plan = units_of(degrees).map(|u| u.plan);
             assert_eq!(plan, Some(PlanUnit::Angle(1.0)), "{degrees}");
         }
         for nothing in [
             "",
             "[",
-            "WGS84 UTM 32N",
+            "UTM 32N",
             "UNIT[\"x\",",
             "PROJCS[\"a\",UNIT[\"f\",nan]]",
         ] {

@@ -1,111 +1,43 @@
 //! Units that well-known text and PROJ texts state themselves.
 
 use super::unit::{LinearUnit, PlanUnit};
+use crate::orienting::orientation::well_known::{proj_value, unit_of_first};
 
-/// What a text states.
-#[derive(Default)]
-pub(super) struct Stated {
-    pub plan: Option<PlanUnit>,
-    pub height: Option<LinearUnit>,
-}
+/// Systems of maps and of heights.
+const MAPS: [&str; 5] = ["PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS"];
+const VERTICALS: [&str; 4] = ["VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"];
 
-/// Reads a text of any kind; nothing where it is neither.
-pub(super) fn stated(text: &str) -> Stated {
+/// Units in plan and of heights that a text of any kind states.
+pub(super) fn stated(text: &str) -> (Option<PlanUnit>, Option<LinearUnit>) {
     if text.contains('[') {
-        of_well_known_text(text)
+        let unit = |systems: &[&str]| LinearUnit::of_metres(unit_of_first(text, systems)?);
+        (unit(&MAPS).map(PlanUnit::Length), unit(&VERTICALS))
     } else if text.contains("+proj=") {
         of_proj(text)
     } else {
-        Stated::default()
+        (None, None)
     }
 }
 
 /// PROJ: `+units=us-ft` or `+to_meter=0.3048`, of heights `+vunits=`, `+vto_meter=`.
-fn of_proj(text: &str) -> Stated {
-    let value = |key: &str| text.split_whitespace().find_map(|w| w.strip_prefix(key));
+fn of_proj(text: &str) -> (Option<PlanUnit>, Option<LinearUnit>) {
     // PROJ allows fractions.
     let factor = |key: &str| {
-        let (over, under) = value(key).map(|v| v.split_once('/').unwrap_or((v, "1")))?;
+        let (over, under) = proj_value(text, key).map(|v| v.split_once('/').unwrap_or((v, "1")))?;
         LinearUnit::of_metres(over.parse::<f64>().ok()? / under.parse::<f64>().ok()?)
     };
-    let unit = |word: &str, key: &str| factor(key).or_else(|| LinearUnit::of_name(value(word)?));
-    let plan = match value("+proj=") {
-        Some("longlat" | "latlong" | "lonlat" | "latlon") => PlanUnit::Angle(1.0),
-        Some("geocent" | "cart") => PlanUnit::Geocentric,
-        _ if value("+units=").is_none() && value("+to_meter=").is_none() => {
-            PlanUnit::Length(LinearUnit::METRE)
-        }
-        // A unit that is not known is none.
-        _ => match unit("+units=", "+to_meter=") {
-            Some(unit) => PlanUnit::Length(unit),
-            None => return Stated::default(),
-        },
+    let unit = |word: &str, key: &str| {
+        factor(key).or_else(|| LinearUnit::of_name(proj_value(text, word)?))
     };
-    Stated {
-        plan: Some(plan),
-        height: unit("+vunits=", "+vto_meter="),
-    }
-}
-
-/// The unit of a system stands directly in its brackets or in those of its axes; those of
-/// parameters and ellipsoids say nothing of coordinates.
-fn of_well_known_text(text: &str) -> Stated {
-    let mut stated = Stated::default();
-    let mut open: Vec<&str> = Vec::new();
-    let (mut word, mut is_quoted) = (0, false);
-    for (i, c) in text.char_indices() {
-        match c {
-            '"' => is_quoted = !is_quoted,
-            _ if is_quoted => {}
-            '[' => {
-                let name = text[word..i].trim();
-                let is_unit = matches!(name, "UNIT" | "LENGTHUNIT");
-                if let Some(unit) = metres_in(&text[i + 1..]).filter(|_| is_unit) {
-                    let system = match open[..] {
-                        [.., system, "AXIS"] | [.., system] => system,
-                        [] => "",
-                    };
-                    stated.set(system, unit);
-                }
-                open.push(name);
-                word = i + 1;
-            }
-            ']' => {
-                open.pop();
-                word = i + 1;
-            }
-            ',' => word = i + 1,
-            _ => {}
-        }
-    }
-    stated
-}
-
-impl Stated {
-    /// The first unit of each counts.
-    fn set(&mut self, system: &str, unit: LinearUnit) {
-        if is_map(system) {
-            self.plan = self.plan.or(Some(PlanUnit::Length(unit)));
-        }
-        if is_vertical(system) {
-            self.height = self.height.or(Some(unit));
-        }
-    }
-}
-
-fn is_map(system: &str) -> bool {
-    let names = ["PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS"];
-    names.contains(&system)
-}
-
-fn is_vertical(system: &str) -> bool {
-    ["VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"].contains(&system)
-}
-
-/// The second field of a unit's brackets: metres of one.
-fn metres_in(inside: &str) -> Option<LinearUnit> {
-    let (_, after) = inside.trim_start().strip_prefix('"')?.split_once('"')?;
-    let number = after.trim_start().strip_prefix(',')?;
-    let end = number.find([',', ']'])?;
-    LinearUnit::of_metres(number[..end].trim().parse().ok()?)
+    let is_stated = ["units", "to_meter"]
+        .iter()
+        .any(|key| proj_value(text, key).is_some());
+    let plan = match proj_value(text, "proj") {
+        Some("longlat" | "latlong" | "lonlat" | "latlon") => Some(PlanUnit::Angle(1.0)),
+        Some("geocent" | "cart") => Some(PlanUnit::Geocentric),
+        _ if !is_stated => Some(PlanUnit::Length(LinearUnit::METRE)),
+        // A unit that is not known is none.
+        _ => unit("units", "to_meter").map(PlanUnit::Length),
+    };
+    (plan, plan.and(unit("vunits", "vto_meter")))
 }

@@ -47,6 +47,14 @@ const NAMED: [(&str, &str, f64); 11] = [
 /// foot and that of the US survey differ by 2e-6, and files state seven digits or more.
 const SAME_UNIT: f64 = 1e-7;
 
+impl SystemUnits {
+    /// Metres on a map, and no heights.
+    pub(crate) const METRES: Self = Self {
+        plan: PlanUnit::Length(LinearUnit::METRE),
+        height: None,
+    };
+}
+
 impl Default for LinearUnit {
     fn default() -> Self {
         Self::METRE
@@ -70,17 +78,12 @@ impl LinearUnit {
 
     /// By PROJ's word (`us-ft`) or a name (`US survey foot`, `Foot_US`, `metre`).
     pub fn of_name(name: &str) -> Option<Self> {
-        let plain: String = (name.chars().filter(char::is_ascii_alphanumeric))
-            .collect::<String>()
-            .to_ascii_lowercase();
-        let metres = match &*plain {
+        let letters = name.chars().filter(char::is_ascii_alphanumeric);
+        let plain = letters.collect::<String>().to_ascii_lowercase();
+        let metres = match &*plain.replace("feet", "foot").replace("ft", "foot") {
             "m" | "metre" | "meter" | "metres" | "meters" => 1.0,
-            "usft" | "ftus" | "ussurveyfoot" | "ussurveyfeet" | "footus" | "surveyfoot" => {
-                Self::US_FOOT.metres
-            }
-            "ft" | "foot" | "feet" | "internationalfoot" | "internationalfeet" | "footintl" => {
-                0.3048
-            }
+            "usfoot" | "footus" | "ussurveyfoot" | "surveyfoot" | "sfoot" => Self::US_FOOT.metres,
+            "foot" | "internationalfoot" | "footinternational" | "footintl" | "footint" => 0.3048,
             _ => NAMED.iter().find(|(word, ..)| *word == name)?.2,
         };
         Some(Self { metres })

@@ -17,9 +17,9 @@ use super::notices;
 use super::planned_view::{PlannedImage, PlannedView};
 use crate::base::error::{Error, listed};
 use crate::orienting::orientation::{
-    Anchor, FileKind, InputFile, Orientation, OrientationSet, PathName, PlanUnit, StatedReference,
-    UnreadFormat, epsg_of, height_unit_of_code, images_called, is_geographic, linear_unit_of_code,
-    orientation_sets, plane_of, to_metric_frame, units_of, unread_format,
+    Anchor, FileKind, InputFile, LinearUnit, Orientation, OrientationSet, PathName, PlanUnit,
+    StatedReference, UnreadFormat, epsg_of, height_unit_of_code, images_called, is_geographic,
+    linear_unit_of_code, orientation_sets, plane_of, to_metric_frame, units_of, unread_format,
 };
 use crate::orienting::scene::Survey;
 use crate::photographs::raster::image_header;
@@ -40,6 +40,8 @@ pub(crate) struct Plan {
     pub origin: Vector3<f64>,
     /// Reference system and geodetic anchor.
     pub survey: Survey,
+    /// The unit of heights that a file beside the orientation states.
+    height_unit: Option<LinearUnit>,
     /// Bytes that loading takes at its peak, the files included.
     pub peak_bytes: u64,
     pub warnings: Vec<String>,
@@ -74,6 +76,7 @@ impl Plan {
             views: Vec::new(),
             origin: Vector3::zeros(),
             survey: Survey::default(),
+            height_unit: None,
             peak_bytes: 0,
             warnings: Vec::new(),
             placement_warnings: Vec::new(),
@@ -243,10 +246,19 @@ impl Plan {
 
     /// Positions in the unit of a code become metres in the same plane.
     fn count_feet_in_metres(&mut self, code: u32, orientations: &mut [Orientation]) {
-        let Some(unit) = linear_unit_of_code(code).filter(|unit| !unit.is_metre()) else {
+        let unit = linear_unit_of_code(code).unwrap_or_default();
+        let heights = self
+            .height_unit
+            .or(height_unit_of_code(code))
+            .unwrap_or(unit);
+        if unit.is_metre() && heights.is_metre() {
             return;
+        }
+        let metric = if unit.is_metre() {
+            code
+        } else {
+            plane_of(code)
         };
-        let metric = plane_of(code);
         if linear_unit_of_code(metric).is_none_or(|unit| !unit.is_metre()) {
             self.errors.push(Error::Scene {
                 problem: format!(
@@ -259,16 +271,17 @@ impl Plan {
             });
             return;
         }
-        let heights = height_unit_of_code(code).unwrap_or(unit);
         for orientation in orientations.iter_mut() {
             let [x, y, z] = orientation.center.into();
             let (plan, height) = (unit.metres, heights.metres);
             orientation.center = [x * plan, y * plan, z * height].into();
         }
         self.warnings.push(format!(
-            "the positions are in {} (EPSG:{code}); the model, its heights and areas are in metres, \
-             in EPSG:{metric}, which is the same plane in metres (--roi and --ground-z count there)",
-            unit.words()
+            "the positions are in {}, heights in {} (EPSG:{code}); the model, its heights and areas \
+             are in metres, in EPSG:{metric}, which is the same plane in metres (--roi and --ground-z \
+             count there)",
+            unit.words(),
+            heights.words()
         ));
         self.survey.epsg = Some(metric);
     }
@@ -311,8 +324,7 @@ impl Plan {
         set: &OrientationSet,
         files: &'a [InputFile],
     ) -> Option<(&'a str, u32)> {
-        let mut own: Vec<(&'a str, u32)> = Vec::new();
-        let mut free: Vec<(&'a str, u32)> = Vec::new();
+        let (mut own, mut free) = (Vec::new(), Vec::new());
         let mut of_others = Vec::new();
         // Photographs are not searched as text, and JSON names places.
         let stated = (self.kinds.iter().zip(files)).filter(|(kind, file)| {
@@ -325,13 +337,15 @@ impl Plan {
                 self.refuse_unknown_feet(file, &text);
                 continue;
             };
+            let heights = units_of(&text).and_then(|units| units.height);
+            let found = (&*file.path, code, heights);
             let is_beside = |other: &&InputFile| belongs_to(file, other);
             match files.iter().find(is_beside) {
                 _ if set.files.iter().any(|&i| belongs_to(file, &files[i])) => {
-                    own.push((&file.path, code));
+                    own.push(found);
                 }
                 Some(other) => of_others.push(format!("{} with {}", file.path, other.path)),
-                None => free.push((&file.path, code)),
+                None => free.push(found),
             }
         }
         if own.is_empty() && free.is_empty() && !of_others.is_empty() {
@@ -356,7 +370,8 @@ impl Plan {
             ));
             return None;
         }
-        Some(*first)
+        self.height_unit = first.2;
+        Some((first.0, first.1))
     }
 
     /// A system without a code of which only the unit is known, and that is no metre.

@@ -205,6 +205,32 @@ fn a_scene_in_feet_becomes_metres_in_the_same_plane() {
             assert!(off.norm() < 1e-6, "{code}: {off}");
         }
     }
+    // A .prj that states another unit of heights than of the plan.
+    let (us, metre) = ("UNIT[\"Foot_US\",0.3048006096012192]", "UNIT[\"metre\",1]");
+    for (code, heights, plan_m, height_m) in [
+        (2263, us, 1200.0 / 3937.0, 1200.0 / 3937.0),
+        (2263, metre, 1200.0 / 3937.0, 1.0),
+        (32118, us, 1.0, 1200.0 / 3937.0),
+        (32118, metre, 1.0, 1.0),
+    ] {
+        let mut feet = scene.clone();
+        for view in &mut feet.views {
+            let [x, y, z] = view.camera.center.into();
+            view.camera.center = [x / plan_m, y / plan_m, z / height_m].into();
+        }
+        let wkt = format!(
+            "COMPD_CS[\"c\",PROJCS[\"p\",{},AUTHORITY[\"EPSG\",\"{code}\"]],VERT_CS[\"v\",{heights}]]",
+            if plan_m < 1.0 { us } else { metre }
+        );
+        let mut files = inputs(to_files(&feet));
+        files.push(InputFile::new("site.prj", wkt.into_bytes()));
+        let found = load_scene(&files, &all()).unwrap_or_else(|e| panic!("{code} {heights}: {e}"));
+        assert_eq!(found.survey.epsg, Some(32118), "{heights}");
+        for (view, planted) in found.views.iter().zip(&scene.views) {
+            let off = view.camera.center - planted.camera.center;
+            assert!(off.norm() < 1e-6, "{code} {heights}: {off}");
+        }
+    }
     assert!(!truth.facets.is_empty());
     // No other code has the plane in metres: refused by the name of the unit.
     let options = LoadOptions {
@@ -291,5 +317,199 @@ fn copies_of_data_sets_lose_against_the_folder_images() {
                 .any(|w| w.contains(&format!("{copies}/"))),
             "{copies}"
         );
+    }
+}
+
+/// The images of the gable house in one folder, its orientation in another.
+fn laid_out(images: &str, model: &str) -> Vec<InputFile> {
+    let files = gable_files().into_iter();
+    let path = |file: &InputFile| match file.path.split_once('/') {
+        Some(("images", name)) => format!("{images}{name}"),
+        Some((_, name)) => format!("{model}{name}"),
+        None => file.path.clone(),
+    };
+    files
+        .map(|file| InputFile::new(&path(&file), file.bytes))
+        .collect()
+}
+
+#[test]
+fn folders_as_programs_leave_them_give_the_scene() {
+    let image = gable_files().remove(0).bytes;
+    let grid = grid();
+    let wkt = wkt(25832);
+    let area = squares(&[60.0], "");
+    let (png, asc, prj, outline) = (&image[..], &grid[..], &wkt[..], &area[..]);
+    let json: &[u8] = b"{\"transform\": [[1, 0, 0, 0]], \"scale\": 0.1}";
+    let list: &[u8] = b"[{\"id\": 0, \"img_name\": \"s1_01\", \"width\": 48, \"height\": 48, \
+        \"position\": [0, 0, 1], \"rotation\": [[1, 0, 0]], \"fy\": 40, \"fx\": 40}]";
+    let exif: &[u8] =
+        b"{\"make\": \"DJI\", \"width\": 48, \"height\": 48, \"projection_type\": \"brown\"}";
+    let models: &[u8] =
+        b"{\"v2 dji\": {\"projection_type\": \"brown\", \"width\": 48, \"height\": 48}}";
+    let csv: &[u8] = b"label,x,y,z\nm1,1.0,2.0,3.0\nm2,2.0,2.0,3.0\n";
+    let gcp: &[u8] = b"EPSG:25832\n1 2 3 4 5 s1_01.png g1\n";
+    let coords: &[u8] = b"WGS84 UTM 32N\n432100 5412300\n1.5 2.5 100.0\n2.5 2.5 100.0\n";
+    let tfw: &[u8] = b"0.05\n0\n0\n-0.05\n432000\n5412000\n";
+    let ply: &[u8] = b"ply\nformat binary_little_endian 1.0\nelement vertex 0\nend_header\n";
+    let xml: &[u8] = b"<?xml version=\"1.0\"?><report><images>6</images></report>";
+    let depth: &[u8] = b"48&48&1&\0\0\0\0\xff\xff\x80\x3f";
+    type Layout<'a> = (&'a str, &'a str, Vec<(&'a str, &'a [u8])>);
+    let layouts: Vec<Layout> = vec![
+        // OpenDroneMap 2 and 3, and WebODM's all.zip.
+        (
+            "images/",
+            "opensfm/",
+            vec![
+                ("cameras.json", models),
+                (
+                    "images.json",
+                    b"[{\"filename\": \"s1_01.png\", \"gps_dop\": 10}]",
+                ),
+                ("log.json", b"{\"stages\": []}"),
+                ("benchmark.txt", b"Dataset runtime: 12.0 seconds\n"),
+                (
+                    "odm_texturing/odm_textured_model_geo_material0000_map_Kd.png",
+                    png,
+                ),
+                ("odm_orthophoto/odm_orthophoto.png", png),
+                ("odm_dem/dsm.asc", asc),
+                ("odm_georeferencing/coords.txt", coords),
+                (
+                    "odm_georeferencing/proj.txt",
+                    b"+proj=utm +zone=32 +datum=WGS84 +units=m\n",
+                ),
+                (
+                    "odm_georeferencing/odm_georeferenced_model.bounds.geojson",
+                    outline,
+                ),
+                (
+                    "odm_georeferencing/ground_control_points.geojson",
+                    b"{\"type\": \"FeatureCollection\", \"features\": []}",
+                ),
+                ("opensfm/exif/s1_01.png.exif", exif),
+                ("opensfm/camera_models.json", models),
+                (
+                    "opensfm/tracks.csv",
+                    b"OPENSFM_TRACKS_VERSION_v2\ns1_01.png\t0\t1\t0.1\t0.2\t0.001\t1\t2\t3\n",
+                ),
+            ],
+        ),
+        (
+            "all/odm/images/",
+            "all/odm/opensfm/",
+            vec![
+                ("all/odm/opensfm/undistorted/images/s1_01.png", png),
+                ("all/odm/gcp_list.txt", gcp),
+                ("all/odm/odm_report/stats.json", json),
+            ],
+        ),
+        // Pix4D.
+        (
+            "flight/",
+            "1_initial/params/",
+            vec![
+                ("1_initial/report/p_report.xml", xml),
+                ("1_initial/params/p_wkt.prj", prj),
+                ("3_dsm_ortho/1_dsm/p_dsm.asc", asc),
+                ("3_dsm_ortho/1_dsm/p_dsm.prj", prj),
+                ("3_dsm_ortho/2_mosaic/p_transparent_mosaic.png", png),
+                ("3_dsm_ortho/2_mosaic/p_transparent_mosaic.tfw", tfw),
+                ("p.p4d", xml),
+            ],
+        ),
+        // Metashape.
+        (
+            "photos/",
+            "export/",
+            vec![
+                ("project.psx", xml),
+                ("project.files/0/chunk.xml", xml),
+                ("export/markers.csv", csv),
+                ("export/model_texture.png", png),
+                ("export/orthomosaic.png", png),
+                ("export/orthomosaic.tfw", tfw),
+                ("export/dem_DSM.asc", asc),
+            ],
+        ),
+        // COLMAP.
+        (
+            "images/",
+            "sparse/0/",
+            vec![
+                ("project.ini", b"log_to_stderr=false\n"),
+                ("database.db", b"SQLite format 3\0"),
+            ],
+        ),
+        (
+            "dense/images/",
+            "dense/sparse/",
+            vec![
+                ("dense/stereo/depth_maps/s1_01.png.geometric.bin", depth),
+                ("dense/stereo/patch-match.cfg", b"s1_01.png\n__auto__, 20\n"),
+                ("dense/fused.ply", ply),
+            ],
+        ),
+        // 3D Gaussian splatting and nerfstudio.
+        (
+            "images/",
+            "sparse/0/",
+            vec![
+                ("cameras.json", list),
+                ("cfg_args", b"Namespace(data_device='cuda')"),
+                ("point_cloud/iteration_30000/point_cloud.ply", ply),
+                ("train/ours_30000/renders/00000.png", png),
+                ("train/ours_30000/gt/00000.png", png),
+                ("input/s1_01.png", png),
+            ],
+        ),
+        (
+            "images/",
+            "colmap/sparse/0/",
+            vec![
+                ("images_2/s1_01.png", png),
+                ("depths/s1_01.png", png),
+                ("masks/s1_01.png", png),
+                ("outputs/nerfacto/dataparser_transforms.json", json),
+                ("sparse_pc.ply", ply),
+            ],
+        ),
+        // A folder of an office.
+        (
+            "DCIM/100MEDIA/",
+            "Orientierung/",
+            vec![
+                ("DCIM/100MEDIA/_MACOSX.txt", b"x"),
+                ("Thumbs.db", b"\xd0\xcf\x11\xe0"),
+                ("Bericht.pdf", b"%PDF-1.4"),
+                ("Passpunkte.csv", csv),
+                ("geo.txt", b"EPSG:25832\ns1_01.png 1 2 3\n"),
+                ("Gebiet.kml", xml),
+                ("Lage.jgw", tfw),
+            ],
+        ),
+        (
+            "",
+            "",
+            vec![
+                ("readme.txt", b"flown in May"),
+                ("boundary.geojson", outline),
+            ],
+        ),
+    ];
+    let count = gable_scene(48).0.views.len();
+    for (images, model, more) in layouts {
+        let mut files = laid_out(images, model);
+        files.extend(
+            more.iter()
+                .map(|(path, bytes)| InputFile::new(path, bytes.to_vec())),
+        );
+        let scene = load_scene(&files, &all()).unwrap_or_else(|e| panic!("{images} {model}: {e}"));
+        let names: Vec<&String> = scene.views.iter().map(|view| &view.name).collect();
+        assert_eq!(names.len(), count, "{images} {model}: {names:?}");
+        let known = &scene.known;
+        let is_unused = known.terrain.is_none() && known.footprints.is_none();
+        assert!(is_unused, "{images} {model}: {:?}", scene.warnings);
+        assert_eq!(scene.survey.anchor, None, "{images} {model}");
     }
 }

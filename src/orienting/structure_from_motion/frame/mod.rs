@@ -41,7 +41,7 @@ use super::block::Block;
 use super::ground_control::ControlResidual;
 use super::similarity::Similarity;
 use crate::base::geometry::mean_point;
-use crate::orienting::orientation::{Anchor, LinearUnit};
+use crate::orienting::orientation::{Anchor, LinearUnit, linear_unit_of_code};
 
 /// What the frame of the world rests on.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,10 +50,8 @@ pub enum FrameBasis {
     Control {
         /// The reference system as it is stated.
         system: String,
-        /// Its EPSG code, where coordinates are on a map.
+        /// Its EPSG code, where coordinates are on a map; the files count in its unit.
         epsg: Option<u32>,
-        /// The unit of that system: what the files count in.
-        unit: LinearUnit,
         /// Zero of the coordinates on the Earth, for longitudes and latitudes.
         anchor: Option<Anchor>,
         /// Coordinates on the map of the frame's zero, metres.
@@ -90,6 +88,17 @@ pub enum FrameBasis {
     MainPlane,
 }
 
+impl FrameBasis {
+    /// What files in this frame count in: the unit of its code.
+    pub(super) fn unit(&self) -> LinearUnit {
+        let code = match self {
+            Self::Control { epsg, .. } => *epsg,
+            _ => None,
+        };
+        code.and_then(linear_unit_of_code).unwrap_or_default()
+    }
+}
+
 /// Height of the mean photograph above the mean point where nothing states the scale, metres.
 const ASSUMED_HEIGHT_M: f64 = 100.0;
 
@@ -116,7 +125,11 @@ pub(super) fn to_frame(
                 let heights = if doubt.is_some() { 0 } else { heights };
                 if heights == 0 {
                     let middle = mean_point(&points(block));
-                    shift(block, &-Vector3::new(0.0, 0.0, middle.z));
+                    let to_ground = Similarity {
+                        shift: -Vector3::new(0.0, 0.0, middle.z),
+                        ..Similarity::default()
+                    };
+                    to_ground.apply(block);
                 }
                 let basis = FrameBasis::Positions {
                     anchor,
@@ -135,15 +148,19 @@ pub(super) fn to_frame(
     if notes.is_empty() && basis == FrameBasis::MainPlane {
         notes.push(words::NOTHING_STATED.to_owned());
     }
-    turn(block, &up);
+    let upright = Similarity {
+        rotation: up,
+        ..Similarity::default()
+    };
+    upright.apply(block);
     let (cameras, points) = (centers(block), points(block));
     let (camera, point) = (mean_point(&cameras), mean_point(&points));
     let scale = ASSUMED_HEIGHT_M / (camera.z - point.z).abs().max(1e-9);
     let ground = Point3::new(camera.x, camera.y, point.z);
     let similarity = Similarity {
         scale,
-        rotation: Rotation3::identity(),
         shift: -ground.coords * scale,
+        ..Similarity::default()
     };
     similarity.apply(block);
     (basis, notes)
@@ -180,22 +197,4 @@ pub(super) fn control_doubts(
         tilt_sigma,
         control: Some(control),
     })
-}
-
-fn turn(block: &mut Block, rotation: &Rotation3<f64>) {
-    let similarity = Similarity {
-        scale: 1.0,
-        rotation: *rotation,
-        shift: Vector3::zeros(),
-    };
-    similarity.apply(block);
-}
-
-fn shift(block: &mut Block, by: &Vector3<f64>) {
-    let similarity = Similarity {
-        scale: 1.0,
-        rotation: Rotation3::identity(),
-        shift: *by,
-    };
-    similarity.apply(block);
 }

@@ -342,3 +342,110 @@ fn positions_that_give_nothing_are_said_to() {
         assert!(off(&block, &truth).1 < 0.01);
     }
 }
+
+/// Whatever headers say of heights and places: a frame that stands, and the words for it.
+#[test]
+fn headers_that_are_wrong_in_usual_ways_never_turn_the_block_over() {
+    type Change = fn(usize, Point3<f64>) -> Point3<f64>;
+    let all: [(&str, Change, bool, &str); 12] = [
+        (
+            "heights below zero",
+            |_, p| Point3::new(p.x, p.y, -p.z),
+            true,
+            "",
+        ),
+        (
+            "heights in feet",
+            |_, p| Point3::new(p.x, p.y, p.z / 0.3048),
+            true,
+            "",
+        ),
+        ("all in feet", |_, p| p / 0.3048, true, ""),
+        (
+            "latitude for longitude",
+            |_, p| Point3::new(p.y, p.x, p.z),
+            false,
+            "mirror",
+        ),
+        (
+            "E for W",
+            |_, p| Point3::new(-p.x, p.y, p.z),
+            false,
+            "mirror",
+        ),
+        (
+            "S without a letter",
+            |_, p| Point3::new(p.x, -p.y, p.z),
+            false,
+            "mirror",
+        ),
+        (
+            "S and W without letters",
+            |_, p| Point3::new(-p.x, -p.y, p.z),
+            true,
+            "",
+        ),
+        (
+            "a barometer that stuck",
+            |_, p| Point3::new(p.x, p.y, 137.0),
+            true,
+            "",
+        ),
+        (
+            "heights above take-off",
+            |_, p| p - Vector3::z() * 300.0,
+            true,
+            "",
+        ),
+        (
+            "one far off",
+            |i, p| if i == 4 { p * 40.0 } else { p },
+            true,
+            "left out: 4.jpg",
+        ),
+        (
+            "one height of 0",
+            |i, p| {
+                if i == 2 {
+                    Point3::new(p.x, p.y, 0.0)
+                } else {
+                    p
+                }
+            },
+            true,
+            "2.jpg",
+        ),
+        (
+            "a mark at zero",
+            |i, p| if i == 7 { Point3::origin() } else { p },
+            true,
+            "7.jpg",
+        ),
+    ];
+    let mut wrong = Vec::new();
+    for has_angles in [true, false] {
+        // Without angles five of nine heights below zero agree with a slope.
+        for (what, change, is_placed, words) in &all[usize::from(!has_angles)..] {
+            let (truth, mut block, mut stated) = moved();
+            for (i, (one, photo)) in stated.iter_mut().zip(&truth.photos).enumerate() {
+                let center = photo.pose.as_ref().unwrap().center;
+                one.position = Some(change(i, center));
+                one.rotation = one.rotation.filter(|_| has_angles);
+                one.sigma_m = Some(0.1);
+            }
+            let (basis, notes) = framed(&mut block, &stated, Some(ANCHOR));
+            let said = notes.join("\n");
+            let tilt = off(&block, &truth).1.to_degrees();
+            let is_by_positions = matches!(basis, FrameBasis::Positions { .. });
+            // Heights that are wrong as a whole tilt a small block, by what their residuals allow.
+            let is_tilted = ["heights in feet", "a barometer that stuck"].contains(what);
+            let most = if is_tilted { 20.0 } else { 6.0 };
+            if tilt > most || is_by_positions != *is_placed || !said.contains(words) {
+                wrong.push(format!(
+                    "{what}, {has_angles}: {tilt} degrees, {basis:?} {said}"
+                ));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -10,7 +10,7 @@
 
 use nalgebra::{Point2, Point3, Vector3};
 
-use super::system::{List, StatedSystem, fields, read_among};
+use super::system::{List, fields, number, read_among};
 use crate::base::error::Result;
 use crate::orienting::orientation::{
     Anchor, GCP_LIST, InputFile, LinearUnit, PlanUnit, SystemUnits, TransverseMercator,
@@ -51,9 +51,6 @@ pub struct GroundControl {
 /// Coordinates on a map are counted from a multiple of this, metres.
 const GRID_M: f64 = 100.0;
 
-/// Largest longitude and latitude, degrees.
-const LARGEST_DEG: [f64; 2] = [180.0, 90.0];
-
 const COLUMNS: &str = "geo_x geo_y geo_z im_x im_y image_name [gcp_name]";
 
 impl GroundControl {
@@ -79,16 +76,16 @@ impl GroundControl {
         for &(i, line) in &list.lines {
             let fields = fields(line);
             let numbers: Vec<f64> = (fields.iter().take(5))
-                .map_while(|field| field.parse().ok().filter(|v: &f64| v.is_finite()))
+                .map_while(|field| number(field).filter(|v| v.is_finite()))
                 .collect();
             let (&[x, y, z, u, v], Some(image)) = (&numbers[..], fields.get(5)) else {
                 return Err(list.refused(i, format!("'{line}'"), COLUMNS));
             };
             let place = [x, y, z];
-            let mark = ((*image).to_owned(), Point2::new(u, v));
+            let mark = (image.clone(), Point2::new(u, v));
             let name = fields.get(6);
             let known = points.iter_mut().find(|p| match name {
-                Some(name) => p.name == **name,
+                Some(name) => p.name == *name,
                 None => p.stated == place,
             });
             match known {
@@ -98,14 +95,27 @@ impl GroundControl {
                 }
                 Some(point) => point.marks.push(mark),
                 None => points.push(ControlPoint {
-                    name: name.map_or_else(|| (points.len() + 1).to_string(), |n| (*n).to_owned()),
+                    name: name
+                        .cloned()
+                        .unwrap_or_else(|| (points.len() + 1).to_string()),
                     stated: place,
                     position: Point3::origin(),
                     marks: vec![mark],
                 }),
             }
         }
-        if let Some((problem, expected)) = no_degrees(&system.units, &points) {
+        let fit = |[x, y]: [usize; 2]| {
+            let mut places = points
+                .iter()
+                .map(|p| [p.stated[x].abs(), p.stated[y].abs()]);
+            places.all(|[lon, lat]| lon <= 180.0 && lat <= 90.0)
+        };
+        if matches!(system.units.plan, PlanUnit::Angle(_)) && !fit([0, 1]) {
+            let problem = match fit([1, 0]) {
+                true => "latitude before longitude",
+                false => "longitudes and latitudes, but the points have others",
+            };
+            let expected = "longitude first, then latitude, or the system of the coordinates";
             return Err(list.refused(first, format!("'{stated}': {problem}"), expected));
         }
         let is_on_map = matches!(system.units.plan, PlanUnit::Length(_));
@@ -184,29 +194,6 @@ impl GroundControl {
             point.position = position;
         }
     }
-}
-
-/// Why coordinates are no longitudes and latitudes, and what is expected.
-fn no_degrees(
-    units: &SystemUnits,
-    points: &[ControlPoint],
-) -> Option<(&'static str, &'static str)> {
-    let is_beyond = |axis: usize, most: f64| points.iter().any(|p| p.stated[axis].abs() > most);
-    let [lon, lat] = LARGEST_DEG;
-    if !matches!(units.plan, PlanUnit::Angle(_)) || !(is_beyond(0, lon) || is_beyond(1, lat)) {
-        return None;
-    }
-    let is_exchanged = !is_beyond(0, lat) && !is_beyond(1, lon);
-    Some(match is_exchanged {
-        true => (
-            "latitude before longitude",
-            "longitude first, then latitude",
-        ),
-        false => (
-            "longitudes and latitudes, but the points have others",
-            StatedSystem::EXPECTED,
-        ),
-    })
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 //!
 //! Its pitch is 0 where the camera looks down and 90 where it looks ahead; accuracies are metres.
 
-use super::system::{List, fields, read_among};
+use super::system::{List, fields, number, read_among};
 use crate::base::error::Result;
 use crate::orienting::orientation::{
     GEO_LIST, InputFile, LinearUnit, PathName, PlanUnit, SystemUnits, TransverseMercator,
@@ -99,10 +99,9 @@ impl GeoList {
 /// A line: the name ends where only numbers follow.
 fn place_of(line: &str, units: &SystemUnits, grid: Option<TransverseMercator>) -> Option<GeoPlace> {
     let fields = fields(line);
-    let is_number = |field: &&str| field.parse::<f64>().is_ok();
-    let name_end = (1..fields.len()).find(|&i| fields[i..].iter().all(is_number))?;
-    let numbers = fields[name_end..].iter().map(|f| f.parse().ok());
-    let numbers: Vec<f64> = numbers.collect::<Option<_>>()?;
+    let numbers_from = |i: usize| fields[i..].iter().map(|f| number(f)).collect::<Option<_>>();
+    let (name_end, numbers): (usize, Vec<f64>) =
+        (1..fields.len()).find_map(|i| Some((i, numbers_from(i)?)))?;
     let number = |i: usize| numbers.get(i).copied().filter(|v| v.is_finite());
     let [x, y] = [number(0)?, number(1)?];
     let position = match (units.plan, grid) {

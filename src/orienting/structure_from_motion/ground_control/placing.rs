@@ -239,14 +239,9 @@ impl Reading {
     /// Brings the block into the frame.
     fn place(&self, block: &mut Block) -> FrameBasis {
         self.fit.similarity.apply(block);
-        let unit = match self.control.units.plan {
-            PlanUnit::Length(unit) if self.control.epsg.is_some() => unit,
-            _ => LinearUnit::METRE,
-        };
         FrameBasis::Control {
             system: self.control.system.clone(),
             epsg: self.control.epsg,
-            unit,
             anchor: self.control.anchor,
             offset: self.control.offset.into(),
             points: self.fit.points.clone(),

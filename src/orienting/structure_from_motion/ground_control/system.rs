@@ -2,9 +2,7 @@
 //! each thing.
 
 use crate::base::error::{Error, Result};
-use crate::orienting::orientation::{
-    InputFile, LinearUnit, PlanUnit, SystemUnits, epsg_of, units_of,
-};
+use crate::orienting::orientation::{InputFile, SystemUnits, epsg_of, units_of};
 
 /// A list in its lines.
 pub(super) struct List<'t> {
@@ -20,7 +18,7 @@ pub(super) struct List<'t> {
 impl<'t> List<'t> {
     /// Reads the first line; `file` is for messages.
     pub(super) fn new(file: &'t str, text: &'t str) -> Result<Self> {
-        let mut lines = (text.trim_start_matches('\u{feff}').lines().enumerate())
+        let mut lines = (text.lines().enumerate())
             .map(|(i, line)| (i, line.trim()))
             .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
         let first = lines.next().unwrap_or((0, ""));
@@ -74,53 +72,61 @@ impl StatedSystem {
 
     /// What a line says of the reference system; `None` where it is none, or its unit is not known.
     pub(in super::super) fn of(line: &str) -> Option<Self> {
-        let upper = line.to_ascii_uppercase();
-        let is_named = line.contains('[') || upper.contains("EPSG");
-        if upper.contains("+PROJ=") || is_named {
-            let units = units_of(line).or_else(|| units_of(&line.to_ascii_lowercase()))?;
-            let is_metric = units.plan == PlanUnit::Length(LinearUnit::METRE);
-            let of_utm = utm_of_proj(&upper).filter(|_| is_metric);
-            let epsg = epsg_of(line).or(of_utm);
-            return Some(Self { epsg, units });
-        }
-        let zone = upper.split("UTM").nth(1)?.trim();
-        let zone = zone.strip_prefix("ZONE").unwrap_or(zone).trim();
-        let is_south = zone.ends_with('S');
-        let number = zone.trim_end_matches(['N', 'S']).trim().parse().ok()?;
-        let epsg = utm(number, is_south)?;
-        Some(Self {
-            epsg: Some(epsg).filter(|_| upper.contains("WGS")),
-            units: SystemUnits {
-                plan: PlanUnit::Length(LinearUnit::METRE),
-                height: None,
-            },
-        })
+        let small = line.to_ascii_lowercase();
+        let is_proj = small.contains("+proj=");
+        let line = if is_proj { &small } else { line };
+        // A zone without a datum is one of metres.
+        let is_zone = !is_proj && small.contains("utm");
+        let units = units_of(line).or(is_zone.then_some(SystemUnits::METRES))?;
+        let epsg = epsg_of(line);
+        Some(Self { epsg, units })
     }
 }
 
-/// The fields of a line, which blanks, tabs, commas or semicolons part.
-pub(super) fn fields(line: &str) -> Vec<&str> {
-    let parts = line.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';'));
-    parts.filter(|field| !field.is_empty()).collect()
+/// The fields of a line, which blanks, tabs, semicolons or commas part. Where something else does,
+/// commas between digits are those of numbers.
+pub(super) fn fields(line: &str) -> Vec<String> {
+    let parted = |by_commas: bool| -> Vec<&str> {
+        let is_between = |c: char| c.is_whitespace() || c == ';' || c == ',' && by_commas;
+        let fields = line.split(is_between);
+        fields.filter(|field| !field.is_empty()).collect()
+    };
+    let with_point = |field: &str| field.replace(',', ".");
+    let is_number = |field: &str| {
+        let is_inside = !field.starts_with(',') && !field.ends_with(',');
+        is_inside && number(&with_point(field)).is_some()
+    };
+    let others = parted(false);
+    let is_decimal = others.iter().all(|f| !f.contains(',') || is_number(f));
+    let fields = match others.len() > 1 && is_decimal {
+        true => others,
+        false => parted(true),
+    };
+    fields.into_iter().map(with_point).collect()
 }
 
-/// EPSG code of a PROJ text of UTM on WGS84.
-fn utm_of_proj(upper: &str) -> Option<u32> {
-    let is_utm = upper.contains("+PROJ=UTM") && upper.contains("=WGS84");
-    let mut words = upper.split_whitespace();
-    let zone = words.find_map(|w| w.strip_prefix("+ZONE="))?.parse().ok()?;
-    utm(zone, upper.contains("+SOUTH")).filter(|_| is_utm)
-}
-
-/// EPSG code of a zone of UTM on WGS84.
-fn utm(zone: u32, is_south: bool) -> Option<u32> {
-    let first = if is_south { 32_700 } else { 32_600 };
-    (1..=60).contains(&zone).then_some(first + zone)
+/// A number, or degrees with minutes and seconds and the letter of their hemisphere: 8°24'0.4"E,
+/// N49d0'0.5, 49:00:00S.
+pub(super) fn number(field: &str) -> Option<f64> {
+    if let Ok(number) = field.parse::<f64>() {
+        return Some(number);
+    }
+    let is_letter = |c: char| "NSEWnsew".contains(c);
+    let is_negative = field.starts_with('-') || field.contains(['S', 'W', 's', 'w']);
+    let body = field.trim_matches(is_letter).trim_start_matches('-');
+    let is_mark = |c: char| "°º:dm'\"’”′″".contains(c);
+    let parts = body.split(is_mark).filter(|part| !part.is_empty());
+    let parts: Vec<f64> = parts.map(|part| part.parse().ok()).collect::<Option<_>>()?;
+    let is_minute = |part: &f64| (0.0..60.0).contains(part);
+    let is_angle = (1..=3).contains(&parts.len()) && parts[1..].iter().all(is_minute);
+    let degrees = parts.iter().rev().fold(0.0, |sum, part| part + sum / 60.0);
+    is_angle.then_some(if is_negative { -degrees } else { degrees })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::orienting::orientation::PlanUnit;
 
     #[test]
     fn reference_systems_in_all_their_forms() {
@@ -138,6 +144,46 @@ mod tests {
         assert_eq!(of("+proj=lcc +units=us-ft"), Some((None, false)));
         assert_eq!(of("+proj=lcc +units=cubit"), None);
         assert_eq!(of("EPSG:6318"), Some((Some(6318), true)));
+        assert_eq!(of("UTM 32N"), Some((None, false)));
+        assert_eq!(of("NAD83 / UTM zone 10N"), Some((Some(32610), false)));
         assert_eq!(of("432150.0 5412300.0 120.0 10 20 a.jpg"), None);
+    }
+
+    #[test]
+    fn commas_part_fields_or_stand_in_numbers() {
+        for (line, expected) in [
+            ("1,5 2,25 a.jpg", vec!["1.5", "2.25", "a.jpg"]),
+            ("1,5;2,25;a b.jpg", vec!["1.5", "2.25", "a", "b.jpg"]),
+            ("1.5,2.25,a.jpg", vec!["1.5", "2.25", "a.jpg"]),
+            ("1, 2, a.jpg", vec!["1", "2", "a.jpg"]),
+            ("1,2,a b.jpg", vec!["1", "2", "a", "b.jpg"]),
+            ("a.jpg,8,49", vec!["a.jpg", "8", "49"]),
+            ("1,2", vec!["1", "2"]),
+            ("8°24'0,5\"E 49,5", vec!["8°24'0.5\"E", "49.5"]),
+        ] {
+            assert_eq!(fields(line), expected, "{line}");
+        }
+    }
+
+    #[test]
+    fn angles_in_many_spellings() {
+        for (text, degrees) in [
+            ("8.4", 8.4),
+            ("8.4E", 8.4),
+            ("W8.4", -8.4),
+            ("8°24'0\"E", 8.4),
+            ("8°24′0″W", -8.4),
+            ("8d24'0\"S", -8.4),
+            ("N8:24:00.0", 8.4),
+            ("-8:24:0", -8.4),
+            ("8°24'n", 8.4),
+            ("8º24.0'N", 8.4),
+        ] {
+            let found = number(text).unwrap_or_else(|| panic!("{text}"));
+            assert!((found - degrees).abs() < 1e-9, "{text}: {found}");
+        }
+        for none in ["", "E", "a.jpg", "8°61'0\"E", "1:2:3:4", "8,4", "d1.png"] {
+            assert_eq!(number(none), None, "{none}");
+        }
     }
 }

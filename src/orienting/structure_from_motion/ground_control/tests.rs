@@ -218,7 +218,8 @@ fn units_of_a_list_give_the_same_metres() {
         let text = text.replace("EPSG:25832", system);
         let control = GroundControl::read("gcp_list.txt", &text).unwrap();
         let (basis, said) = placed(&mut block, &paths, &control, false);
-        let Some(FrameBasis::Control { offset, unit, .. }) = basis else {
+        let unit = basis.as_ref().map(FrameBasis::unit);
+        let (Some(FrameBasis::Control { offset, .. }), Some(unit)) = (basis, unit) else {
             panic!("{system}: {said}")
         };
         let has_code = system.starts_with("EPSG");
@@ -228,6 +229,100 @@ fn units_of_a_list_give_the_same_metres() {
             let off = (a + Vector3::from(offset) - (b + OFFSET)).norm();
             assert!(off < 0.3, "{system} {height}: {off} m");
         }
+    }
+}
+
+/// Degrees, minutes and seconds of an angle to the hundred thousandth of a second.
+fn sexagesimal(deg: f64) -> [f64; 3] {
+    let seconds = (deg.abs() * 3600.0 * 1e5).round() / 1e5;
+    let minutes = (seconds / 60.0).floor();
+    [
+        (minutes / 60.0).floor(),
+        minutes % 60.0,
+        seconds - 60.0 * minutes,
+    ]
+}
+
+#[test]
+fn lists_in_the_forms_of_many_programs_give_the_same_frame() {
+    use crate::orienting::orientation::{InputFile, TransverseMercator};
+    let (truth, block, paths, text) = spoilt(|_, _| {});
+    let lines = |system: &str, line: &dyn Fn(&[&str]) -> String| {
+        let of = |text: &str| line(&text.split(' ').collect::<Vec<_>>());
+        let lines: Vec<String> = text.lines().skip(1).map(of).collect();
+        format!("{system}\n{}\n", lines.join("\n"))
+    };
+    let joined = |by: &'static str| move |f: &[&str]| f.join(by);
+    let comma = |f: &[&str]| f[..5].join(" ").replace('.', ",") + " " + &f[5..].join(" ");
+    let grid = TransverseMercator::of_epsg(25832).unwrap();
+    let degrees = |f: &[&str], form: &dyn Fn([f64; 3], char) -> String| {
+        let [x, y] = [f[0], f[1]].map(|v| v.parse().unwrap());
+        let [lon, lat] = grid.geographic(x, y).map(sexagesimal);
+        format!("{} {} {}", form(lon, 'E'), form(lat, 'N'), f[2..].join(" "))
+    };
+    let marks = |[d, m, s]: [f64; 3], letter: char| format!("{d}°{m}'{s:.5}\"{letter}");
+    let before = |[d, m, s]: [f64; 3], letter: char| format!("{letter}{d}d{m}'{s:.5}");
+    let colons = |[d, m, s]: [f64; 3], _: char| format!("{d}:{m}:{s:.5}");
+    let decimal =
+        |[d, m, s]: [f64; 3], letter: char| format!("{:.10}{letter}", d + m / 60.0 + s / 3600.0);
+    let plain = lines("EPSG:25832", &joined(" "));
+    let utf16: Vec<u8> = "\u{feff}"
+        .encode_utf16()
+        .chain(plain.encode_utf16())
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    let forms: Vec<Vec<u8>> = [
+        lines("EPSG:25832", &comma),
+        lines("EPSG:25832", &|f| comma(f).replace(' ', ";")),
+        lines("EPSG:25832", &joined("\t")),
+        lines("EPSG:25832", &joined(",")),
+        lines("EPSG:25832", &joined(", ")),
+        lines("WGS 84 / UTM zone 32N", &joined(" ")),
+        lines("ETRS89 UTM 32N", &joined(" ")),
+        lines("25832", &joined(" ")),
+        lines(
+            "+proj=utm +zone=32 +ellps=GRS80 +units=m +no_defs",
+            &joined(" "),
+        ),
+        lines("+PROJ=UTM +ZONE=32 +DATUM=WGS84", &joined(" ")),
+        lines(
+            "urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837",
+            &joined(" "),
+        ),
+        lines("EPSG:25832", &|f| f.join(" ") + " 0.02 # seen"),
+        format!(
+            "\u{feff}# of the office\r\n\r\n{}",
+            plain.replace('\n', "\r\n")
+        ),
+        lines("EPSG:4326", &|f| degrees(f, &marks)),
+        lines("WGS84", &|f| degrees(f, &before)),
+        lines("EPSG:4258", &|f| degrees(f, &colons)),
+        lines("+proj=longlat +datum=WGS84", &|f| degrees(f, &decimal)),
+    ]
+    .map(String::into_bytes)
+    .into_iter()
+    .chain([utf16])
+    .collect();
+    let far = |block: &Block| {
+        let [a, b] = [0, 8].map(|i| block.photos[i].pose.as_ref().unwrap().center);
+        b - a
+    };
+    for bytes in forms {
+        let shown: String = String::from_utf8_lossy(&bytes).chars().take(120).collect();
+        let file = InputFile::new("GCP_list.txt", bytes);
+        let control = GroundControl::among(&[file]).unwrap_or_else(|e| panic!("{e}: {shown}"));
+        let mut block = block.clone();
+        let (basis, said) = placed(&mut block, &paths, &control.unwrap(), false);
+        let Some(FrameBasis::Control { points, .. }) = basis else {
+            panic!("{shown}: {said}")
+        };
+        assert!(
+            points.iter().all(|p| p.agrees) && said.is_empty(),
+            "{shown}: {said}"
+        );
+        // Grid north is 0.7 degrees from true north there.
+        let off = (far(&block) - far(&truth)).norm();
+        assert!(off < 0.02 * far(&truth).norm(), "{shown}: {off} m");
     }
 }
 

@@ -192,6 +192,78 @@ mod tests {
     }
 
     #[test]
+    fn positions_and_heights_are_read_as_cameras_write_them() {
+        let numbers = |pairs: &[[u32; 2]]| -> Vec<u8> {
+            pairs
+                .iter()
+                .flatten()
+                .flat_map(|n| n.to_le_bytes())
+                .collect()
+        };
+        let latitude = numbers(&[[28, 1], [2, 1], [285, 10]]);
+        let height = numbers(&[[55, 10]]);
+        let letter = |letter: u8| [&b"\x01\0\x02\0\x02\0\0\0"[..], &[letter]].concat();
+        let level = |kind: u8, level: u8| [5, 0, kind, 0, 1, 0, 0, 0, level].to_vec();
+        let gimbal = b"GimbalRollDegree=\"+0.00\"".to_vec();
+        let xmp = |text: &str| format!("{text:25}").into_bytes();
+        let (north, above) = (28.041_25, Some(5.5));
+        for (old, new, lat, stated) in [
+            (letter(b'N'), letter(b's'), Some(-north), above),
+            (letter(b'N'), letter(b'S'), Some(-north), above),
+            (letter(b'N'), letter(b' '), Some(north), above),
+            (
+                latitude.clone(),
+                numbers(&[[28_041_250, 1_000_000], [0, 1], [0, 1]]),
+                Some(north),
+                above,
+            ),
+            (
+                latitude.clone(),
+                numbers(&[[28, 1], [2475, 1000], [0, 0]]),
+                Some(north),
+                above,
+            ),
+            (
+                latitude.clone(),
+                numbers(&[[28_041_250, 1_000_000], [0, 0], [0, 0]]),
+                Some(north),
+                above,
+            ),
+            (latitude.clone(), numbers(&[[0, 0]; 3]), None, None),
+            (
+                latitude.clone(),
+                numbers(&[[91, 1], [0, 1], [0, 1]]),
+                None,
+                None,
+            ),
+            (latitude, numbers(&[[0, 1]; 3]), Some(0.0), above),
+            (level(1, 0), level(1, 1), Some(north), Some(-5.5)),
+            (level(1, 0), level(1, 3), Some(north), Some(-5.5)),
+            (level(1, 0), level(1, 2), Some(north), above),
+            (level(1, 0), level(2, b'1'), Some(north), Some(-5.5)),
+            (height.clone(), numbers(&[[0, 1]]), Some(north), Some(0.0)),
+            (height.clone(), numbers(&[[0, 0]]), Some(north), None),
+            (height, numbers(&[[u32::MAX, 0]]), Some(north), None),
+            (
+                gimbal,
+                xmp("AbsoluteAltitude=\"+77.25\""),
+                Some(north),
+                above,
+            ),
+        ] {
+            let mut bytes = head(b"II");
+            let at = bytes.windows(old.len()).position(|w| w == old).unwrap();
+            bytes[at..at + new.len()].copy_from_slice(&new);
+            let found = PhotoMetadata::read(&bytes, [800, 600]);
+            let is_near = match (found.position, lat) {
+                (Some([_, found]), Some(lat)) => (found - lat).abs() < 1e-6,
+                (found, lat) => found.is_none() && lat.is_none(),
+            };
+            assert!(is_near && found.height_m == stated, "{new:?}: {found:?}");
+        }
+    }
+
+    #[test]
     fn a_clock_that_was_never_set_states_no_time() {
         let texts = [
             "0000:00:00 00:00:00",

@@ -104,7 +104,11 @@ impl Tags {
         self.position = angle(4)
             .zip(angle(2))
             .map(|(lon, lat)| [lon * east, lat * north]);
-        let is_below = of(5).and_then(|e| e.value.first()) == Some(&1);
+        // 1 is below the sea, 3 below the ellipsoid (Exif 3.0); some write the digit.
+        let below = [1, 3, b'1'];
+        let is_below = of(5)
+            .and_then(|e| e.value.first())
+            .is_some_and(|v| below.contains(v));
         let height = of(6).and_then(|e| reader.numbers(e).first().copied());
         // Drones write a height above the sea as one below it where its sign does not fit.
         let signed = height.map(|h| if is_below && h > 0.0 { -h } else { h });

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
 use super::report::{CameraReport, LeftOut, OrientReport, PhotoReport};
 use super::sparse_model::{OrientedPhoto, SparseModel, SparsePoint};
-use crate::orienting::orientation::{Anchor, LinearUnit};
+use crate::orienting::orientation::Anchor;
 use crate::orienting::structure_from_motion::block::{Block, Track};
 use crate::orienting::structure_from_motion::bundle::Covariance;
 use crate::orienting::structure_from_motion::frame::{FrameBasis, StatedPose};
@@ -93,10 +93,7 @@ pub(in super::super) fn sparse_model(
             FrameBasis::Control { offset, .. } => (*offset).into(),
             _ => Vector3::zeros(),
         },
-        unit: match basis {
-            FrameBasis::Control { unit, .. } => *unit,
-            _ => LinearUnit::METRE,
-        },
+        unit: basis.unit(),
     }
 }
 
@@ -133,21 +130,19 @@ pub(in super::super) fn report(
     }));
     let cameras = cameras(block, names, covariance);
     warnings.extend(cameras.iter().filter_map(contradiction));
-    let (epsg, unit_m, offset, control) = match basis {
+    let (epsg, offset, control) = match basis {
         FrameBasis::Control {
             epsg,
-            unit,
             offset,
             points,
             ..
-        } => (*epsg, unit.metres, *offset, points.clone()),
-        _ => (None, 1.0, [0.0; 3], Vec::new()),
+        } => (*epsg, *offset, points.clone()),
+        _ => (None, [0.0; 3], Vec::new()),
     };
     OrientReport {
         frame,
         anchor,
         epsg,
-        unit_m,
         offset,
         is_metric: anchor.is_some() || !control.is_empty(),
         control,
@@ -319,13 +314,12 @@ fn frame_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) {
         FrameBasis::Control {
             system,
             anchor,
-            unit,
             offset: [east, north, _],
             points,
             rms_m: [plan, height],
             ..
         } => {
-            let agreeing = points.iter().filter(|p| p.agrees).count();
+            let (unit, agreeing) = (basis.unit(), points.iter().filter(|p| p.agrees).count());
             let frame = match anchor {
                 Some(anchor) => metres_from(anchor),
                 None if unit.is_metre() => format!("{system}, x from {east} and y from {north} m"),

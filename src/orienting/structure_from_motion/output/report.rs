@@ -111,10 +111,9 @@ pub struct OrientReport {
     pub frame: String,
     /// Longitude, latitude (degrees) and height (metres) of the frame's zero, where known.
     pub anchor: Option<crate::orienting::orientation::Anchor>,
-    /// EPSG code of the frame's map, where it is known.
+    /// EPSG code of the frame's map, where it is known; files state positions in its unit, and
+    /// those here are metres.
     pub epsg: Option<u32>,
-    /// Metres of the unit of that map, in which files state positions; those here are metres.
-    pub unit_m: f64,
     /// What files in the frame's map add to the coordinates of the model, metres.
     pub offset: [f64; 3],
     /// Is the scale that of the world?

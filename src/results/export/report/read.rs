@@ -1,4 +1,5 @@
-//! The model of a CityJSON file: every object with a Solid whose surfaces have semantics.
+//! The model of a CityJSON file, also of features one a line: every object with a Solid whose
+//! surfaces have semantics.
 //!
 //! What `ridgeline` states of a facet (standard deviations, probability, photographs) is taken from
 //! the attributes of its surface; files of others have none of it.
@@ -8,6 +9,7 @@ use serde_json::Value;
 
 use crate::base::geometry::{Plane, mean_point, plan_sides, vector_area};
 use crate::base::ids::{BuildingId, FacetId};
+use crate::orienting::known::json_of;
 use crate::orienting::orientation::{PlanUnit, SystemUnits, units_of};
 use crate::roofs::model::{
     Building, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
@@ -33,7 +35,8 @@ pub(super) struct ReadModel {
 
 /// Reads a file; an error says what was expected and where.
 pub(super) fn read_model(bytes: &[u8]) -> Result<ReadModel, String> {
-    let file: Value = serde_json::from_slice(bytes).map_err(|e| format!("is no JSON: {e}"))?;
+    let text = String::from_utf8_lossy(bytes);
+    let file = json_of(&text).map_err(|line| format!("is no JSON: see line {line}"))?;
     if file["type"] != "CityJSON" {
         return Err("is no CityJSON: its \"type\" is not \"CityJSON\"".into());
     }

@@ -11,7 +11,7 @@ use super::text::quoted_long;
 use crate::base::error::{Error, Result};
 
 fn parse<T: DeserializeOwned>(path: &str, text: &str) -> Result<T> {
-    serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|e| {
+    serde_json::from_str(text).map_err(|e| {
         let message = e.to_string();
         let problem = message.split(" at line ").next().unwrap_or_default();
         Error::Line {

@@ -80,7 +80,7 @@ pub(crate) fn text_of<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
 }
 
 pub(crate) fn parse<'a>(path: &str, text: &'a str) -> Result<Document<'a>> {
-    Document::parse(text.trim_start_matches('\u{feff}')).map_err(|e| Error::Line {
+    Document::parse(text).map_err(|e| Error::Line {
         file: path.to_owned(),
         line: e.pos().row as usize,
         problem: quoted_long(&e.to_string()),
