@@ -578,10 +578,11 @@ mod tests {
     #[test]
     fn a_lawn_beside_a_house_is_left_out_and_one_with_a_shed_is_not() {
         const EAST: [f64; 4] = [26.0, -10.0, 33.0, -1.0];
-        let (words, seen) = outcome(&gable_scene(400).0, EAST);
+        let (words, seen) = outcome(&gable_scene(800).0, EAST);
         assert_eq!(words, NOTHING_SEEN);
         assert!(seen.contains("0 m² in 0 tiles"), "{seen}");
-        let (words, _) = outcome(&shed_scene(400).0, EAST);
+        let (words, seen) = outcome(&shed_scene(800).0, EAST);
         assert_eq!(words, "1 building");
+        assert!(seen.contains("1 place where a roof may be"), "{seen}");
     }
 }
