@@ -1,6 +1,7 @@
 //! `ridgeline reconstruct`: folder in, folder out.
 
 use std::fs;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -32,7 +33,7 @@ const BAR_STEPS: f64 = 100.0;
 /// Reads the scene, runs every stage, writes the results and prints a summary.
 pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     let params = read_params(&args.input)?;
-    make_folder(args)?;
+    make_folder(&args.out)?;
     args.project
         .as_deref()
         .map_or(Ok(()), files::check_writable)?;
@@ -102,7 +103,9 @@ fn orient_first(
     let oriented = orient::oriented(input, &wanted, seen)?;
     print!("{}", oriented.report.in_short());
     let written = oriented.files();
-    files::write_all(&args.out.join(ORIENTATION), &written)?;
+    let beside = args.out.join(ORIENTATION);
+    make_folder(&beside)?;
+    files::write_all(&beside, &written)?;
     if !oriented.report.is_metric {
         let found = ridgeline::Error::Scene {
             problem: "the photographs are oriented, but nothing tells their scale".to_owned(),
@@ -197,11 +200,11 @@ fn hardly_agrees(scene: &Scene) -> bool {
     report.is_some_and(|report| report.finding == Finding::Unexplained)
 }
 
-fn make_folder(args: &ReconstructArgs) -> Result<(), Failure> {
-    fs::create_dir_all(&args.out).map_err(|e| {
+fn make_folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path).map_err(|e| {
         Failure::Input(format!(
             "{}: cannot be made: {e}; give --out a folder that can be written",
-            args.out.display()
+            path.display()
         ))
     })
 }

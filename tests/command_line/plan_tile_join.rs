@@ -214,8 +214,10 @@ fn a_plan_says_what_each_tile_reads() {
     let tiles = plan["tiles"].as_array().unwrap();
     assert_eq!(tiles.len(), TILES as usize);
     let house = &tiles[0]["cells"][0];
-    assert_eq!(house["place"]["core"][0], -31.0);
-    assert_eq!(house["place"]["region"][0], -90.0);
+    let west = |of: &str| house["place"][of][0].as_f64().unwrap();
+    assert!((-31.0..-5.0).contains(&west("core")) && west("region") < west("core"));
+    let sites = plan["sites"].as_array().unwrap();
+    assert!(sites.iter().any(|site| site["is_worked_on"] == true));
     let views = house["views"].as_array().unwrap();
     assert!(views.len() >= 3 && house["memory_mb"].as_u64().unwrap() > 20);
     let (width, name) = (&views[0]["window"][2], &views[0]["view"]);
@@ -224,8 +226,9 @@ fn a_plan_says_what_each_tile_reads() {
     let path = format!("images/{}", name.as_str().unwrap());
     assert!(inputs.iter().any(|input| input["file"] == path), "{path}");
     // The views do not show the last tile: it says so, and its part is there nevertheless.
-    let last = &tiles[3]["cells"][0];
-    assert!(last["left_out"].as_str().unwrap().contains("is seen by"));
+    let last = tiles[3]["cells"].as_array().unwrap();
+    let mut why = last.iter().map(|cell| cell["left_out"].as_str().unwrap());
+    assert!(why.all(|why| why.contains("is seen by")));
     assert!(reference().parts[3].len() < 1000);
 }
 
