@@ -12,7 +12,11 @@ const PORT = Number(process.env.PORT ?? 4179);
 const SITE = `http://127.0.0.1:${PORT}/`;
 const QUALITY = 74;
 
-const tab = (name) => async (page) => page.getByRole("tab", { name, exact: true }).click();
+const tab = (name) => async (page) =>
+  page
+    .getByRole("tab")
+    .filter({ has: page.locator("b").getByText(name, { exact: true }) })
+    .click();
 const button = (name) => async (page) => page.getByRole("button", { name, exact: true }).click();
 const allViews = async (page) =>
   page.getByRole("group", { name: "View" }).getByRole("button", { name: "All" }).click();

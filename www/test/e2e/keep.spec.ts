@@ -1,6 +1,16 @@
 /** What lasts: the project over reloads, and the page without a network. */
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, openParameters, storedKeys, waitForStage, watch } from "./helpers";
+import {
+  give,
+  houseFiles,
+  openDemo,
+  openParameters,
+  runUpTo,
+  showProject,
+  storedKeys,
+  waitForStage,
+  watch,
+} from "./helpers";
 
 test("what was removed comes back on request", async ({ page }) => {
   await page.goto("/");
@@ -19,6 +29,7 @@ test("what was removed comes back on request", async ({ page }) => {
     await expect(views).toHaveCount(again);
   }
   await expect(page.getByRole("button", { name: "Undo" })).toHaveCount(0);
+  await showProject(page);
   await page.getByRole("button", { name: "New project" }).click();
   await expect(page.locator(".view")).toHaveCount(0);
   await page.getByRole("button", { name: "Undo" }).click();
@@ -40,11 +51,13 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
 
   await page.goto("about:blank");
   await page.goto("/");
+  await showProject(page);
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await expect(page.locator("#param-texture-padding_px")).toHaveValue("5");
-  await page.getByRole("button", { name: "Run up to Segments" }).click();
+  await runUpTo(page, "Segments");
   await waitForStage(page, "segments");
 
+  await showProject(page);
   await page.getByTestId("kept").getByRole("button", { name: "Delete" }).click();
   await expect(page.getByTestId("entrance")).toBeVisible();
   await expect.poll(() => page.evaluate(storedKeys)).toEqual([]);
@@ -63,7 +76,7 @@ test("the page and the demo scene work without a network after the first load", 
     .toBe(true);
   await context.setOffline(true);
   await page.reload();
-  await page.getByRole("button", { name: "Demo scene" }).click();
+  await openDemo(page);
   await waitForStage(page, "segments", 60_000);
   await expect(page.getByRole("alert")).toHaveCount(0);
 });

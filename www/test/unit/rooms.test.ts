@@ -48,6 +48,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "stages/tours",
       "app/tour",
       "app/view/stages",
+      "app/view/result",
       "app/project/entrance",
       "app/shell",
     ],

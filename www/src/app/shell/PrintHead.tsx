@@ -1,7 +1,7 @@
 /** What a printed page has that the screen says elsewhere: which project, by which method, and what was found. */
-import { counted } from "../parts/counted";
-import "./print.css";
+
 import { stageWords } from "../../stages/catalogue";
+import { counted } from "../parts/counted";
 import { slopedArea } from "../parts/facetArea";
 import { method } from "../state/parameters";
 import { projectName } from "../state/project";
