@@ -1,13 +1,18 @@
 /** What lasts: the project over reloads, and the page without a network. */
 import { expect, test } from "@playwright/test";
 import {
+  chooseMethod,
   give,
   houseFiles,
   openDemo,
   openParameters,
+  runButton,
   runUpTo,
+  showFace,
   showProject,
+  stage,
   storedKeys,
+  upload,
   waitForStage,
   watch,
 } from "./helpers";
@@ -34,6 +39,51 @@ test("what was removed comes back on request", async ({ page }) => {
   await expect(page.locator(".view")).toHaveCount(0);
   await page.getByRole("button", { name: "Undo" }).click();
   await expect(page.locator(".status.good")).toHaveCount(6);
+});
+
+test("another method, a file and the example take nothing away", async ({ page }) => {
+  test.slow();
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, houseFiles());
+  await runButton(page).click();
+  await waitForStage(page, "model");
+  const found = await stage(page, "lines").textContent();
+
+  await test.step("a method keeps what it found", async () => {
+    await chooseMethod(page, "Rectangles");
+    await expect(stage(page, "regions")).toHaveAttribute("data-status", "waiting");
+    await chooseMethod(page, "Lines");
+    await expect(stage(page, "model")).toHaveAttribute("data-status", "done");
+    // Nothing has run since: the worker holds it, too.
+    await expect(runButton(page)).toBeDisabled();
+  });
+
+  await test.step("a file that is added leaves the result in view, outdated, and is taken back", async () => {
+    await showFace(page, "Result");
+    await give(page, [upload("notes.txt", Buffer.from("of the flight"))]);
+    await expect(page.getByText("notes.txt added")).toBeVisible();
+    await expect(stage(page, "model")).toHaveAttribute("data-status", "outdated");
+    await expect(page.getByRole("button", { name: "Model", exact: true })).toHaveAttribute(
+      "aria-pressed",
+      "true",
+    );
+    await expect(page.getByRole("button", { name: "Reconstruct again" })).toBeEnabled();
+    await page.getByRole("button", { name: "Undo adding" }).click();
+    await expect(stage(page, "model")).toHaveAttribute("data-status", "done");
+  });
+
+  await test.step("the example takes the place of a project, which comes back by Ctrl+Z", async () => {
+    await showProject(page);
+    await openDemo(page);
+    await expect(page.getByRole("button", { name: "Project: Detached houses" })).toBeVisible();
+    await waitForStage(page, "matches");
+    await page.locator("body").press("Control+z");
+    await expect(page.getByRole("button", { name: "Project: Own files" })).toBeVisible();
+    await expect(stage(page, "model")).toHaveAttribute("data-status", "done");
+    expect(await stage(page, "lines").textContent()).toBe(found);
+  });
+  expect(problems).toEqual([]);
 });
 
 test("a reload keeps the project until it is deleted", async ({ page }) => {

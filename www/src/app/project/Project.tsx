@@ -116,12 +116,26 @@ function ViewRow({ image }: { image: ImageReport }) {
         <span class="muted numbers">
           {image.size === null ? "unreadable" : `${image.size[0]} × ${image.size[1]} px`}
         </span>
-        <span class={`status ${image.orientation === null ? "bad" : "good"}`} title={image.orientation ?? ""}>
-          {image.orientation === null ? "no orientation" : "oriented"}
-        </span>
+        <Status image={image} />
       </div>
       <RemoveButton path={image.path} />
     </li>
+  );
+}
+
+/** What was rejected is not told to be good. */
+function Status({ image: { orientation } }: { image: ImageReport }) {
+  const isTaken = scene.value !== null || isBusy.value || runOptions.value.tileM !== null;
+  const [kind, words] =
+    orientation === null
+      ? ["bad", "no orientation"]
+      : isTaken
+        ? ["good", "oriented"]
+        : ["", "orientation read, not used"];
+  return (
+    <span class={`status ${kind}`} title={orientation ?? ""}>
+      {words}
+    </span>
   );
 }
 

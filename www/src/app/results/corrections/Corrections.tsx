@@ -11,7 +11,7 @@ import { isBusy } from "../../state/activity";
 import { notify } from "../../state/notices";
 import { mainResults } from "../../state/results";
 import { scene } from "../../state/scene";
-import { select, selection } from "../../state/viewState";
+import { aimAt, select, selection } from "../../state/viewState";
 import { correctionWords, NOT_APPLIED_WORDS } from "./correctionWords";
 import { doubtfulFacets, nextDoubtful } from "./doubtful";
 import { drawn, forgetDrawn, showCorrecting } from "./drawn";
@@ -105,9 +105,15 @@ export function selectedFacet(): number | null {
   return facetOf(selection.value);
 }
 
+/** The camera turns to it, with the building about it. */
 function goOn(): void {
-  const index = nextDoubtful(mainResults.value.facets ?? [], selectedFacet());
+  const facets = mainResults.value.facets ?? [];
+  const index = nextDoubtful(facets, selectedFacet());
   select(index === null ? null : { kind: "facet", index });
+  const building = facets[index ?? -1]?.building;
+  if (building !== undefined) {
+    aimAt(facets.flatMap((facet) => (facet.building === building ? facet.outer : [])));
+  }
 }
 
 function onKeyDown(event: KeyboardEvent): void {
