@@ -94,6 +94,22 @@ test("a building leads to its faces, the report is read in the page, and saved",
   expect(problems).toEqual([]);
 });
 
+test("where there is no room beside the model, its buildings lie over it when asked for", async ({
+  page,
+}) => {
+  await page.setViewportSize({ width: 360, height: 740 });
+  await page.goto("/");
+  await give(page, houseFiles());
+  await runButton(page).click();
+  await waitForStage(page, "model");
+  await expect(page.getByTestId("buildings")).toBeHidden();
+  await page.getByRole("button", { name: "Buildings", exact: true }).click();
+  await expect(page.getByTestId("buildings")).toContainText("1 building");
+  expect(await axeFindings(page)).toEqual([]);
+  await page.getByRole("button", { name: "Close the panel" }).click();
+  await expect(page.getByTestId("buildings")).toBeHidden();
+});
+
 test("the face is in the address, and stays over visits", async ({ page }) => {
   await page.goto("/");
   await give(page, houseFiles());

@@ -31,25 +31,35 @@ export function Workbench() {
       <main class="centre">
         {!isBehind && <Notices />}
         <StageView />
+        {of === "result" && panel === null && hasModel.value && (
+          <button type="button" class="open-panel" onClick={() => openPanel("main")}>
+            Buildings
+          </button>
+        )}
       </main>
       <aside class="column project" aria-label="Project" hidden={panel !== "project"}>
+        {isOver && <Close />}
         <Project />
         {!isBehind && <KnownFiles />}
       </aside>
       <aside class="column details" aria-label="Details" hidden={panel !== "main"}>
+        {isOver && <Close />}
         {of === "result" ? <ResultPanel /> : <MethodPanel />}
       </aside>
-      {isOver && (
-        <button
-          type="button"
-          class="quiet close-panel"
-          aria-label="Close the panel"
-          onClick={() => openPanel(null)}
-        >
-          ✕
-        </button>
-      )}
     </div>
+  );
+}
+
+function Close() {
+  return (
+    <button
+      type="button"
+      class="quiet close-panel"
+      aria-label="Close the panel"
+      onClick={() => openPanel(null)}
+    >
+      ✕
+    </button>
   );
 }
 

@@ -234,6 +234,9 @@ function secondsText(seconds: number): string {
 
 function countsText({ counts, seconds }: StageState): string {
   const texts = Object.entries(counts).map(([name, count]) => counted(count, name.replaceAll("_", " ")));
+  if (seconds !== null) {
+    texts.push(secondsText(seconds));
+  }
   if (counts["correlations"] !== undefined && seconds) {
     texts.push(`${(counts["correlations"] / seconds / 1e6).toFixed(1)} million correlations per second`);
   }
