@@ -25,7 +25,7 @@ const allViews = async (page) =>
 const link = (fields, stage) => async (page) => {
   // Anew: in an open page the link would only change what that page shows.
   await page.goto("about:blank");
-  await page.goto(`${SITE}#scene=demo&${fields}`);
+  await page.goto(`${SITE}#scene=demo&face=method&${fields}`);
   const isDone = (name) => document.querySelector(`[data-stage="${name}"]`)?.dataset.status === "done";
   await page.waitForFunction(isDone, stage, { timeout: 120_000 });
   await page.waitForTimeout(1000);
@@ -206,6 +206,7 @@ await withSite(PORT, async (browser) => {
   });
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, colorScheme: "light" });
   await link("tab=model", "model")(page);
+  await button("Result")(page);
   await page.waitForTimeout(3000);
   await page.screenshot({ path: new URL("model.png", DOCS).pathname });
   await page.setViewportSize({ width: 1280, height: 860 });

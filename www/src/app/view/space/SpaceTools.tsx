@@ -41,6 +41,15 @@ export function SpaceTools({ viewer, onFit, children }: Props) {
       viewer?.draw3d(takePoint);
     }
   };
+  useEffect(() => {
+    const end = ({ key }: KeyboardEvent) => {
+      if (key === "Escape" && tool.value !== null) {
+        choose(tool.value);
+      }
+    };
+    window.addEventListener("keydown", end);
+    return () => window.removeEventListener("keydown", end);
+  });
   const keepPicture = async () => {
     const blob = await viewer?.screenshot();
     if (blob != null) {
@@ -91,7 +100,7 @@ export function SpaceTools({ viewer, onFit, children }: Props) {
         {children}
         {isPhone.value ? <Menu title="Tools">{tools}</Menu> : tools}
       </div>
-      {tool.value !== null && <Crosshair viewer={viewer} onLeave={() => choose(tool.value ?? "measure")} />}
+      {tool.value !== null && <Crosshair viewer={viewer} />}
       {tool.value === "measure" && <Reading measured={measured.value} />}
       {tool.value === "draw" && (
         <p class="reading" role="status">
@@ -115,7 +124,7 @@ const STEPS: Record<string, readonly [number, number]> = {
 };
 
 /** Points for the tools without a pointer: arrows move the crosshair (Shift: finely), Enter takes the point below it. */
-function Crosshair({ viewer, onLeave }: { viewer: Viewer | null; onLeave: () => void }) {
+function Crosshair({ viewer }: { viewer: Viewer | null }) {
   const button = useRef<HTMLButtonElement>(null);
   const { clientWidth = 0, clientHeight = 0 } = button.current?.parentElement ?? {};
   const place = aim.value ?? { x: clientWidth / 2, y: clientHeight / 2 };
@@ -128,8 +137,6 @@ function Crosshair({ viewer, onLeave }: { viewer: Viewer | null; onLeave: () => 
         x: Math.min(clientWidth - 1, Math.max(0, place.x + size * step[0])),
         y: Math.min(clientHeight - 1, Math.max(0, place.y + size * step[1])),
       };
-    } else if (event.key === "Escape") {
-      onLeave();
     }
   };
   // Its place is known once it is laid out.
