@@ -2,6 +2,7 @@
 import "./project.css";
 import type { FileReport, ImageReport } from "../../shared/records";
 import { counted } from "../parts/counted";
+import { onPage } from "../session/failureNotice";
 import { isBusy } from "../state/activity";
 import { files, inspection, isKnownKind, projectName, runOptions } from "../state/project";
 import { images, peakMb, scene } from "../state/scene";
@@ -206,7 +207,7 @@ function Warnings() {
       <h3>Warnings</h3>
       <ul class="warnings">
         {[...all].map((text) => (
-          <li key={text}>{text}</li>
+          <li key={text}>{onPage(text)}</li>
         ))}
       </ul>
       <Doubts />
