@@ -184,7 +184,7 @@ export async function removeFile(path: string): Promise<void> {
 export async function clearProject(): Promise<void> {
   await actions.perform({ kind: "open", name: "nothing", phase: "load" }, () => {
     if (files.value.length > 0) {
-      remove("The project", []);
+      remove(`“${projectName.value}”`, []);
       nameProject("");
     }
   });

@@ -21,7 +21,7 @@ export const shownPanel: ReadonlySignal<Panel | null> = computed(() => {
     return chosen.value.panel;
   }
   if (face.value === "result" && !hasModel.value) {
-    return "project";
+    return isRoomy.value ? "project" : null;
   }
   return isRoomy.value || face.value === "method" || selection.value !== null ? "main" : null;
 });

@@ -11,5 +11,13 @@ export function ResultViews() {
     ["model", "Model"],
     ["images", "Photographs"],
   ] as const;
-  return <Choice legend="What is shown" choices={choices} chosen={tab.value} choose={showTab} />;
+  return (
+    <Choice
+      legend="What is shown"
+      choices={choices}
+      chosen={tab.value}
+      choose={showTab}
+      class="result-views"
+    />
+  );
 }
