@@ -10,7 +10,7 @@ test("a preliminary model is shown before the facets, and replaced by the run's 
   await expect(mark).toHaveText(/preliminary/, { timeout: 60_000 });
   // Not a result: the stage has none, nothing can be saved or corrected.
   await expect(stage(page, "facets")).not.toHaveAttribute("data-status", "done");
-  await expect(page.getByRole("button", { name: "Download" })).toHaveCount(0);
+  await expect(page.getByRole("button", { name: "Report" })).toHaveCount(0);
   await expect(page.getByTestId("corrections")).toHaveCount(0);
   const viewer = page.getByTestId("viewer");
   let drawn = 0;

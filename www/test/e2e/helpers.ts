@@ -161,14 +161,16 @@ export async function output(page: Page, name: string): Promise<Locator> {
   if ((await menu.getAttribute("aria-expanded")) !== "true") {
     await menu.click();
   }
-  return page.getByRole("button", { name, exact: true });
+  const entry = page.getByRole("button", { name, exact: true });
+  await expect(entry).toBeVisible();
+  return entry;
 }
 
 /** Saves an output file; its bytes. */
 export async function save(page: Page, name: string): Promise<Buffer> {
   const entry = await output(page, name);
   const [download] = await Promise.all([page.waitForEvent("download"), entry.click()]);
-  expect(download.suggestedFilename()).toBe(name);
+  expect(download.suggestedFilename()).toBe(name === "Save project" ? "ridgeline-project.zip" : name);
   await page.keyboard.press("Escape");
   return readFileSync(await download.path());
 }

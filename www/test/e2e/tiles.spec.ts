@@ -97,6 +97,7 @@ test("a project opens again to the same state, here and on the command line", as
   await give(page, [upload("house.zip", project)]);
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await expect(page.getByLabel(/Height of the ground/)).toHaveValue("100");
+  await openParameters(page);
   await expect(page.locator("#param-texture-padding_px")).toHaveValue("5");
   // Its results are shown without a run.
   await waitForStage(page, "model", 20_000);

@@ -124,18 +124,14 @@ function ViewRow({ image }: { image: ImageReport }) {
   );
 }
 
-/** What was rejected is not told to be good. */
+/** What is being read, or was rejected, is not told to be good. */
 function Status({ image: { orientation } }: { image: ImageReport }) {
-  const isTaken = scene.value !== null || isBusy.value || runOptions.value.tileM !== null;
-  const [kind, words] =
-    orientation === null
-      ? ["bad", "no orientation"]
-      : isTaken
-        ? ["good", "oriented"]
-        : ["", "orientation read, not used"];
+  const isTaken = scene.value !== null || runOptions.value.tileM !== null;
+  const read = isBusy.value ? "orientation read" : "orientation read, not used";
+  const kind = orientation === null ? "bad" : isTaken ? "good" : "";
   return (
     <span class={`status ${kind}`} title={orientation ?? ""}>
-      {words}
+      {orientation === null ? "no orientation" : isTaken ? "oriented" : read}
     </span>
   );
 }

@@ -5,6 +5,7 @@ import { isCorrecting, showCorrecting } from "../../results/corrections/drawn";
 import { cancel } from "../../session/session";
 import { canRun, runAll } from "../../session/stageRuns";
 import { phase } from "../../state/activity";
+import { inspection } from "../../state/project";
 import { exportNames, mainResults } from "../../state/results";
 import { stages } from "../../state/stages";
 import { showTab } from "../../state/viewState";
@@ -24,13 +25,9 @@ export function ResultActions() {
           {hasModel ? "Reconstruct again" : "Reconstruct"}
         </button>
       )}
-      {hasModel && (
-        <>
-          <Report />
-          <DownloadMenu />
-          {mainResults.value.facets !== null && <CorrectButton />}
-        </>
-      )}
+      {hasModel && <Report />}
+      {inspection.value !== null && <DownloadMenu />}
+      {mainResults.value.facets !== null && <CorrectButton />}
     </div>
   );
 }

@@ -168,7 +168,12 @@ function Found({ stage }: { stage: StageState }) {
   const { status, fraction, seconds, warnings } = stage;
   if (status === "running") {
     const percent = Math.round(100 * fraction);
-    return <progress max={1} value={fraction} aria-label={`${stageWords(stage.name).title}: ${percent} %`} />;
+    return (
+      <span class="muted numbers">
+        <span class="time">{percent} %</span>
+        <progress max={1} value={fraction} aria-label={`${stageWords(stage.name).title}: ${percent} %`} />
+      </span>
+    );
   }
   return (
     <span class="muted numbers">
