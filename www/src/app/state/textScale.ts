@@ -1,6 +1,6 @@
 /** How large the page writes: the usual size, until the person chooses. */
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
-import { keep, kept } from "../../shared/keptChoice";
+import { keep, kept } from "./keptChoice";
 
 /** Sizes of text and controls: the second is for projectors. */
 const SCALES = [1, 1.15, 1.3, 1.5] as const;

@@ -1,6 +1,6 @@
 /** Dark or light: what the system prefers, until the person chooses. */
 import { computed, effect, signal } from "@preact/signals";
-import { keep, kept } from "../../shared/keptChoice";
+import { keep, kept } from "./keptChoice";
 
 export type Theme = "light" | "dark";
 

@@ -1,9 +1,9 @@
 /** What is looked at: the face, the tab, the view, the selection, and how the figures show them. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
-import { keep, kept } from "../../shared/keptChoice";
 import type { Vec3 } from "../../shared/records";
 import type { Selection, Standpoint } from "../../shared/selection";
 import type { Tab } from "../../stages/list";
+import { keep, kept } from "./keptChoice";
 
 /** The model for those who want it, or how it comes about, stage by stage. */
 export type Face = "result" | "method";
