@@ -42,7 +42,7 @@ const median = (values) => values.sort((a, b) => a - b)[Math.floor(values.length
 
 await withSite(PORT, async (browser) => {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-  await page.goto(`http://127.0.0.1:${PORT}/#scene=demo&tab=model`);
+  await page.goto(`http://127.0.0.1:${PORT}/#scene=demo&face=method&tab=model`);
   await page.waitForSelector('[data-stage="model"][data-status="done"]', { timeout: PATIENCE });
   await page.locator("details.parameters").getByRole("heading", { name: "Parameters" }).click();
   await page.waitForSelector('input[type="range"][aria-label$=", dragged"]');

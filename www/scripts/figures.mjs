@@ -12,7 +12,11 @@ const PORT = Number(process.env.PORT ?? 4179);
 const SITE = `http://127.0.0.1:${PORT}/`;
 const QUALITY = 74;
 
-const tab = (name) => async (page) => page.getByRole("tab", { name, exact: true }).click();
+const tab = (name) => async (page) =>
+  page
+    .getByRole("tab")
+    .filter({ has: page.locator("b").getByText(name, { exact: true }) })
+    .click();
 const button = (name) => async (page) => page.getByRole("button", { name, exact: true }).click();
 const allViews = async (page) =>
   page.getByRole("group", { name: "View" }).getByRole("button", { name: "All" }).click();
@@ -21,7 +25,7 @@ const allViews = async (page) =>
 const link = (fields, stage) => async (page) => {
   // Anew: in an open page the link would only change what that page shows.
   await page.goto("about:blank");
-  await page.goto(`${SITE}#scene=demo&${fields}`);
+  await page.goto(`${SITE}#scene=demo&face=method&${fields}`);
   const isDone = (name) => document.querySelector(`[data-stage="${name}"]`)?.dataset.status === "done";
   await page.waitForFunction(isDone, stage, { timeout: 120_000 });
   await page.waitForTimeout(1000);
@@ -202,6 +206,7 @@ await withSite(PORT, async (browser) => {
   });
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, colorScheme: "light" });
   await link("tab=model", "model")(page);
+  await button("Result")(page);
   await page.waitForTimeout(3000);
   await page.screenshot({ path: new URL("model.png", DOCS).pathname });
   await page.setViewportSize({ width: 1280, height: 860 });

@@ -29,9 +29,11 @@ async function fourSides(page) {
   const canvas = page.locator(".space-view canvas, .stage-view canvas").first();
   const box = await canvas.boundingBox();
   const middle = [box.x + box.width / 2, box.y + box.height * 0.7];
-  await page.locator(".space-tools").evaluate((tools) => {
-    tools.style.visibility = "hidden";
-  });
+  for (const over of [".space-tools", ".space-foot"]) {
+    await page.locator(over).evaluate((part) => {
+      part.style.visibility = "hidden";
+    });
+  }
   await page.mouse.move(...middle);
   await page.mouse.wheel(0, NEARER);
   await page.waitForTimeout(1500);
@@ -64,7 +66,7 @@ await withSite(PORT, async (browser) => {
   const page = await browser.newPage({ viewport: { width: 1440, height: 860 }, colorScheme: "light" });
   await page.goto(SITE);
   await page.locator('input[type="file"]').first().setInputFiles(filesOf(folder));
-  await page.getByRole("button", { name: "Run all" }).click();
+  await page.getByRole("button", { name: "Reconstruct", exact: true }).click();
   const outcome = () => {
     const rejection = document.querySelector('[role="alert"]')?.textContent;
     const isDone = document.querySelector('[data-stage="model"]')?.dataset.status === "done";
@@ -75,7 +77,6 @@ await withSite(PORT, async (browser) => {
   if (said !== "done") {
     throw new Error(said);
   }
-  await page.getByRole("tab", { name: "Model", exact: true }).click();
   await page.waitForTimeout(3000);
   await composed(browser, await fourSides(page));
 });

@@ -21,8 +21,6 @@ export interface Stage {
   mainCount?: string;
   /** The things known beforehand of which its tab tells what the images say. */
   known?: readonly ("register" | "terrain" | "cloud")[];
-  /** Whether facets can be corrected by hand while its tab is open. */
-  isCorrected?: boolean;
 }
 
 /** Who answers, and of what. */

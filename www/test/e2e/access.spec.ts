@@ -1,5 +1,19 @@
 import { expect, type Locator, type Page, test } from "@playwright/test";
-import { axeFindings, demoImages, give, houseFiles, lookOf, openTab, waitForStage } from "./helpers";
+import {
+  axeFindings,
+  chooseMethod,
+  demoImages,
+  give,
+  houseFiles,
+  lookOf,
+  openTab,
+  output,
+  runButton,
+  runUpTo,
+  showFace,
+  tabOf,
+  waitForStage,
+} from "./helpers";
 
 /** Phone, tablet, small and usual screen, projector; and 1440 x 900 at 200 % zoom. */
 const SIZES = [
@@ -44,8 +58,13 @@ test("the entrance: a model on its ground before the core is there, at every siz
     await page.setViewportSize({ width, height });
     // The layout follows the size a moment later.
     await expect.poll(() => overflow(page), `${width} px`).toBeLessThanOrEqual(0);
-    for (const name of ["How?", "Demo scene", "Files…", "Folder…"]) {
-      await expect(entrance.getByRole("button", { name, exact: true }), name).toBeVisible();
+    for (const name of [
+      /^I have only photographs/,
+      /^Photographs with their/,
+      /^Show me/,
+      /^open a folder/,
+    ]) {
+      await expect(entrance.getByRole("button", { name }), String(name)).toBeVisible();
     }
   }
   go();
@@ -63,24 +82,27 @@ test("photographs without orientation: recipes, and what their headers say", asy
   expect(await axeFindings(page)).toEqual([]);
 });
 
-test("in the hand: model, photographs and tour, with fingers", async ({ browser }) => {
+test("in the hand: model, photographs and stages, with fingers", async ({ browser }) => {
   const context = await browser.newContext({ viewport: { width: 360, height: 740 }, hasTouch: true });
   const page = await context.newPage();
   await page.goto("/");
   await give(page, houseFiles());
-  await page.getByRole("button", { name: "Run all" }).click();
-  const places = page.getByRole("navigation", { name: "Places" });
-  await places.getByRole("button", { name: "Model" }).click();
-  await expect(page.getByRole("button", { name: "model.glb" })).toBeVisible({ timeout: 120_000 });
-  await expect(page.getByRole("tab")).toHaveCount(0);
-  await places.getByRole("button", { name: "Photographs" }).click();
+  await runButton(page).click();
+  await expect(await output(page, "model.glb")).toBeVisible();
+  await page.keyboard.press("Escape");
+  await page.getByRole("button", { name: "Photographs", exact: true }).click();
   const caption = page.locator(".image-view figcaption").first();
   const zoom = async () => Number(/(\d+) %/.exec((await caption.textContent()) ?? "")?.[1]);
   const before = await zoom();
   await pinch(page, page.locator(".image-view canvas").first());
   expect(await zoom()).toBeGreaterThan(1.5 * before);
-  expect(await overflow(page)).toBeLessThanOrEqual(0);
-  expect(await axeFindings(page)).toEqual([]);
+  for (const face of ["Result", "Method"] as const) {
+    await showFace(page, face);
+    expect(await overflow(page)).toBeLessThanOrEqual(0);
+    expect(await axeFindings(page)).toEqual([]);
+  }
+  await openTab(page, "3D lines");
+  await expect(page.getByTestId("viewer")).toBeVisible();
   await context.close();
 });
 
@@ -104,10 +126,10 @@ for (const [method, last] of [
     await page.goto("/");
     await give(page, houseFiles());
     await expect(page.locator(".status.good")).toHaveCount(6);
-    await page.getByRole("button", { name: method, exact: true }).click();
-    await page.getByRole("button", { name: `Run up to ${last}` }).click();
+    await chooseMethod(page, method);
+    await runUpTo(page, last);
     await waitForStage(page, last.toLowerCase());
-    const tabs = await page.getByRole("tab").allTextContents();
+    const tabs = await page.locator('[role="tab"] b').allTextContents();
     expect(tabs.length).toBeGreaterThan(5);
     for (const name of tabs) {
       await openTab(page, name);
@@ -132,11 +154,11 @@ for (const [method, last] of [
 async function byKeyboard(page: Page): Promise<void> {
   await page.getByRole("button", { name: "Skip to the views" }).focus();
   await page.keyboard.press("Enter");
-  await expect(page.getByRole("tab", { name: "Model" })).toBeFocused();
+  await expect(tabOf(page, "Model")).toBeFocused();
   await page.keyboard.press("ArrowLeft");
-  await expect(page.getByRole("tab", { name: "Refinement" })).toBeFocused();
+  await expect(tabOf(page, "Refinement")).toBeFocused();
   await page.keyboard.press("ArrowRight");
-  await expect(page.getByRole("tab", { name: "Model" })).toHaveAttribute("aria-selected", "true");
+  await expect(tabOf(page, "Model")).toHaveAttribute("aria-selected", "true");
   await page.getByRole("button", { name: "Measure" }).press("Enter");
   await page.getByRole("button", { name: /^Crosshair/ }).focus();
   for (const key of ["Enter", "ArrowRight", "ArrowRight", "ArrowDown", "Enter"]) {
@@ -179,7 +201,7 @@ async function onPaper(page: Page): Promise<void> {
     Array.from(canvas.getContext("2d")?.getImageData(0, 0, 1, 1).data ?? []),
   );
   expect(corner).toEqual([255, 255, 255, 255]);
-  for (const control of [".header", ".tabs", ".rail", ".space-tools", ".dropzone"]) {
+  for (const control of [".header", ".rail", ".space-tools", ".dropzone"]) {
     await expect(page.locator(control).first(), control).toBeHidden();
   }
   await page.emulateMedia({ media: "screen" });

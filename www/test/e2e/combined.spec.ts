@@ -1,6 +1,19 @@
 /** Both methods for one model (`--method combined`). */
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, lookOf, openParameters, openTab, stage, waitForStage, watch } from "./helpers";
+import {
+  chooseMethod,
+  give,
+  houseFiles,
+  lookOf,
+  openParameters,
+  openTab,
+  runButton,
+  stage,
+  switchLayer,
+  tabOf,
+  waitForStage,
+  watch,
+} from "./helpers";
 
 test("both methods find one model of a house, and each view tells of its own stages", async ({ page }) => {
   test.slow();
@@ -8,11 +21,11 @@ test("both methods find one model of a house, and each view tells of its own sta
   await page.goto("/");
   await give(page, houseFiles());
   await expect(page.locator(".status.good")).toHaveCount(6);
-  await page.getByRole("button", { name: "Combined", exact: true }).click();
-  await expect(page.getByRole("tab", { name: "Clusters" })).toBeVisible();
-  await expect(page.getByRole("tab", { name: "Half-planes" })).toBeVisible();
+  await chooseMethod(page, "Combined");
+  await expect(tabOf(page, "Clusters")).toBeVisible();
+  await expect(tabOf(page, "Half-planes")).toBeVisible();
   await expect(page).toHaveURL(/method=combined/);
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "model");
   const names = await page
     .locator("[data-stage]")
@@ -40,7 +53,7 @@ test("both methods find one model of a house, and each view tells of its own sta
     await expect(async () => {
       expect((await lookOf(page, viewer)).drawn).toBeGreaterThan(0.03);
     }).toPass({ timeout: 20_000 });
-    await page.getByRole("button", { name: "By method" }).click();
+    await switchLayer(page, "By method");
     await expect(page.getByTestId("method-legend").getByRole("listitem")).toHaveCount(3);
   });
 

@@ -1,7 +1,7 @@
 /** Mistakes planted in a model, and corrected with a few clicks. */
 import { readFileSync } from "node:fs";
 import { expect, type Page, test } from "@playwright/test";
-import { give, houseFiles, openTab, upload, waitForStage, watch } from "./helpers";
+import { give, houseFiles, runButton, save, upload, waitForStage, watch } from "./helpers";
 
 interface RoofFace {
   slopeDeg: number;
@@ -12,11 +12,7 @@ interface RoofFace {
 
 /** The roof faces of the model, as its CityJSON has them. */
 async function roofOf(page: Page): Promise<RoofFace[]> {
-  const [download] = await Promise.all([
-    page.waitForEvent("download"),
-    page.getByRole("button", { name: "model.city.json" }).click(),
-  ]);
-  const city = JSON.parse(readFileSync(await download.path(), "utf8"));
+  const city = JSON.parse((await save(page, "model.city.json")).toString());
   const { scale, translate } = city.transform;
   const place = (v: number) =>
     city.vertices[v].map((x: number, i: number) => x * scale[i] + translate[i]) as Place;
@@ -162,11 +158,11 @@ test("a false facet, a wrong slope and a missing facet are corrected with a few 
   const { problems } = watch(page);
   await page.goto("/");
   await give(page, houseFiles());
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "model");
   const truth = await roofOf(page);
   const panel = page.getByTestId("corrections");
-  await panel.getByRole("heading", { name: "Corrections" }).click();
+  await page.getByRole("button", { name: "Correct", exact: true }).click();
   const press = (name: string) => panel.getByRole("button", { name, exact: true }).click();
 
   // The slopes at the ridge of the side wing, by the largest pair that falls in opposite directions.
@@ -254,17 +250,12 @@ test("facets are deleted and made symmetric, and corners dragged, in the 3D view
   const { problems } = watch(page);
   await page.goto("/");
   await give(page, houseFiles());
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "model");
-  await openTab(page, "Model");
   const truth = await roofOf(page);
-  const [download] = await Promise.all([
-    page.waitForEvent("download"),
-    page.getByRole("button", { name: "report.json" }).click(),
-  ]);
-  const origin: Place = JSON.parse(readFileSync(await download.path(), "utf8")).origin;
+  const origin: Place = JSON.parse((await save(page, "report.json")).toString()).origin;
   const panel = page.getByTestId("corrections");
-  await panel.getByRole("heading", { name: "Corrections" }).click();
+  await page.getByRole("button", { name: "Correct", exact: true }).click();
   const press = (name: string) => panel.getByRole("button", { name, exact: true }).click();
   const done = panel.getByRole("list", { name: "Corrections so far" }).getByRole("listitem");
   const west = truth.find(({ azimuthDeg, slopeDeg }) => Math.abs(azimuthDeg - 246) < 5 && slopeDeg > 30);
@@ -411,12 +402,11 @@ test("a missing ridge is drawn by two clicks in one photograph", async ({ page }
   const { problems } = watch(page);
   await page.goto("/");
   await give(page, houseFiles());
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "model");
-  await openTab(page, "Model");
   const truth = await roofOf(page);
   const panel = page.getByTestId("corrections");
-  await panel.getByRole("heading", { name: "Corrections" }).click();
+  await page.getByRole("button", { name: "Correct", exact: true }).click();
   const done = panel.getByRole("list", { name: "Corrections so far" }).getByRole("listitem");
   const west = truth.find(({ azimuthDeg, slopeDeg }) => Math.abs(azimuthDeg - 246) < 5 && slopeDeg > 30);
   const east = truth.find(({ azimuthDeg }) => Math.abs(azimuthDeg - 66) < 5);

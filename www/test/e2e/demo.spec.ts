@@ -1,11 +1,21 @@
-import { readFileSync } from "node:fs";
 import { expect, test } from "@playwright/test";
-import { lookOf, openParameters, openTab, stage, waitForStage, watch } from "./helpers";
+import {
+  lookOf,
+  openDemo,
+  openParameters,
+  openTab,
+  runUpTo,
+  save,
+  stage,
+  switchLayer,
+  waitForStage,
+  watch,
+} from "./helpers";
 
 test("one click turns the demo scene into a textured model that can be downloaded", async ({ page }) => {
   const { problems } = watch(page);
   await page.goto("/");
-  await page.getByRole("button", { name: "Demo scene" }).click();
+  await openDemo(page);
   await waitForStage(page, "model");
   await expect(page.getByRole("alert")).toHaveCount(0);
   await expect(page.locator(".view")).toHaveCount(6);
@@ -21,34 +31,25 @@ test("one click turns the demo scene into a textured model that can be downloade
 
   await test.step("plain and wireframe look different, with fewer colours", async () => {
     const textured = await lookOf(page, canvas);
-    await page.getByRole("button", { name: "Plain" }).click();
+    await switchLayer(page, "Plain");
     await expect(async () => {
       expect((await lookOf(page, canvas)).colours).toBeLessThan(textured.colours);
     }).toPass({ timeout: 20_000 });
-    await page.getByRole("button", { name: "Wireframe" }).click();
+    await switchLayer(page, "Wireframe");
     await expect(async () => {
       expect((await lookOf(page, canvas)).drawn).toBeLessThan(0.8 * textured.drawn);
     }).toPass({ timeout: 20_000 });
-    await page.getByRole("button", { name: "Textured" }).click();
+    await switchLayer(page, "Textured");
   });
 
   await test.step("the GLB begins as one", async () => {
-    const [download] = await Promise.all([
-      page.waitForEvent("download"),
-      page.getByRole("button", { name: "model.glb" }).click(),
-    ]);
-    expect(download.suggestedFilename()).toBe("model.glb");
-    const bytes = readFileSync(await download.path());
+    const bytes = await save(page, "model.glb");
     expect(bytes.subarray(0, 4).toString("latin1")).toBe("glTF");
     expect(bytes.readUInt32LE(8)).toBe(bytes.length);
   });
 
   await test.step("the CityJSON holds buildings", async () => {
-    const [download] = await Promise.all([
-      page.waitForEvent("download"),
-      page.getByRole("button", { name: "model.city.json" }).click(),
-    ]);
-    const city = JSON.parse(readFileSync(await download.path(), "utf8")) as {
+    const city = JSON.parse((await save(page, "model.city.json")).toString()) as {
       type: string;
       CityObjects: Record<string, unknown>;
     };
@@ -101,12 +102,12 @@ test("a run can be cancelled, and started again", async ({ page }) => {
         }, 10);
       }),
   );
-  await page.getByRole("button", { name: "Demo scene" }).click();
+  await openDemo(page);
   await cancelled;
   await expect(page.locator('[data-status="running"]')).toHaveCount(0);
   await expect(stage(page, "model")).toHaveAttribute("data-status", "waiting");
   await expect(page.getByRole("alert")).toHaveCount(0);
-  await page.getByRole("button", { name: "Run up to Segments" }).click();
+  await runUpTo(page, "Segments");
   await waitForStage(page, "segments");
   await openTab(page, "Segments");
   await expect(page.locator(".image-view canvas").first()).toBeVisible();

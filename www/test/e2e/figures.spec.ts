@@ -5,12 +5,17 @@ import {
   axeFindings,
   lookOf,
   onePage,
+  openDemo,
   openParameters,
   openTab,
   pickUntil,
   reopen,
+  runButton,
+  showFace,
   stage,
   steadyLook,
+  switchLayer,
+  tabOf,
   waitForStage,
 } from "./helpers";
 
@@ -18,7 +23,8 @@ let page: Page;
 
 onePage(async (opened) => {
   page = opened;
-  await page.getByRole("button", { name: "Demo scene" }).click();
+  await openDemo(page);
+  await showFace(page, "Method");
   await waitForStage(page, "model");
 });
 
@@ -158,7 +164,7 @@ test("a link shows the stage, the method's parameters and the selection", async 
 });
 
 test("figures 16 to 23: groups, border lines and facets", async () => {
-  const runAll = page.getByRole("button", { name: "Run all" });
+  const runAll = runButton(page);
   if (await runAll.isEnabled()) {
     await runAll.click();
     // What was kept stays in view until the run replaces it.
@@ -330,14 +336,14 @@ test("the viewer: normals, cameras, measuring, a picture, and a view's own camer
   await clear();
   await page.getByRole("button", { name: "Fit" }).click();
   const textured = await steadyLook(page, viewer);
-  await page.getByRole("button", { name: "Normals" }).click();
+  await switchLayer(page, "Normals");
   await expect(async () => {
     expect((await lookOf(page, viewer)).vivid).toBeGreaterThan(textured.vivid + 0.03);
   }).toPass({ timeout: 20_000 });
 
   const facets = /(\d+) facets/.exec((await stage(page, "refinement").textContent()) ?? "")?.[1];
   const normals = await lookOf(page, viewer);
-  await page.getByRole("button", { name: "By method" }).click();
+  await switchLayer(page, "By method");
   await expect(page.getByTestId("method-legend")).toHaveText(
     `Lines (B99): ${facets} facetsRectangles (W96): 0 facets`,
   );
@@ -364,7 +370,7 @@ test("the viewer: normals, cameras, measuring, a picture, and a view's own camer
   ]);
   expect(picture.suggestedFilename()).toBe("model.png");
 
-  await page.getByRole("button", { name: "Textured" }).click();
+  await switchLayer(page, "Textured");
   await page.getByLabel("Look through the camera of a view").selectOption({ index: 1 });
   const slider = page.getByLabel("Opacity of the photograph");
   await slider.fill("0");
@@ -409,7 +415,7 @@ test("only the stages behind a changed parameter run again", async () => {
       }).observe(card, { attributes: true, attributeFilter: ["data-status"] });
     }
   });
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "model");
   expect([...new Set(ran)]).toEqual(["facets", "refinement", "corrections", "model"]);
   expect(await time("matches")).toBe(before);
@@ -421,7 +427,7 @@ test("new lines of the model stand behind the matched ones, and say where they c
   // Such a link needs more than its tab: the line comes with the model.
   await reopen(page, "3D lines", `scene=demo&tab=lines&select=line:${matched}`);
   await waitForStage(page, "refinement");
-  await expect(page.getByRole("tab", { name: "3D lines" })).toHaveAttribute("aria-selected", "true");
+  await expect(tabOf(page, "3D lines")).toHaveAttribute("aria-selected", "true");
   await expect(inspector().locator(".picked")).toHaveText(`3D line ${matched}`);
   await expect(inspector().locator("div", { hasText: /^Found/ })).toContainText("new: ");
   await expect(page.getByTestId("accuracy").locator(".dot-line")).toHaveAttribute(

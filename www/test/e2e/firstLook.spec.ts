@@ -1,16 +1,16 @@
 /** A preliminary model is in view soon, and the run's own takes its place. */
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, lookOf, stage, waitForStage, watch } from "./helpers";
+import { give, houseFiles, lookOf, openDemo, output, runButton, stage, waitForStage, watch } from "./helpers";
 
 test("a preliminary model is shown before the facets, and replaced by the run's own", async ({ page }) => {
   const { problems } = watch(page);
   await page.goto("/");
-  await page.getByRole("button", { name: "Demo scene" }).click();
+  await openDemo(page);
   const mark = page.getByTestId("preliminary");
   await expect(mark).toHaveText(/preliminary/, { timeout: 60_000 });
   // Not a result: the stage has none, nothing can be saved or corrected.
   await expect(stage(page, "facets")).not.toHaveAttribute("data-status", "done");
-  await expect(page.getByRole("button", { name: "model.glb" })).toHaveCount(0);
+  await expect(page.getByRole("button", { name: "Report" })).toHaveCount(0);
   await expect(page.getByTestId("corrections")).toHaveCount(0);
   const viewer = page.getByTestId("viewer");
   let drawn = 0;
@@ -23,8 +23,11 @@ test("a preliminary model is shown before the facets, and replaced by the run's 
 
   await waitForStage(page, "model");
   await expect(mark).toHaveCount(0);
-  await expect(page.getByRole("tab", { name: "Model" })).toHaveAttribute("aria-selected", "true");
-  await expect(page.getByRole("button", { name: "model.glb" })).toBeVisible();
+  await expect(page.getByRole("button", { name: "Model", exact: true })).toHaveAttribute(
+    "aria-pressed",
+    "true",
+  );
+  await expect(await output(page, "model.glb")).toBeVisible();
   await expect(async () => {
     expect((await lookOf(page, viewer)).colours).toBeGreaterThan(40);
   }).toPass({ timeout: 20_000 });
@@ -42,7 +45,7 @@ test("a small scene has no first look: its own model is soon there", async ({ pa
     seen.observe(document.body, { subtree: true, childList: true });
   });
   await give(page, houseFiles());
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "model");
   expect(await page.evaluate(() => document.body.dataset["preliminary"])).toBeUndefined();
 });

@@ -12,6 +12,8 @@ import {
   lookOf,
   MAY_SKIP,
   openTab,
+  save,
+  showProject,
   stage,
   type Upload,
   upload,
@@ -59,6 +61,7 @@ async function state(page: Page, name: string, value: string): Promise<void> {
 
 /** Opens the fields of region and ground; what was open once is open still. */
 async function openPlace(page: Page): Promise<void> {
+  await showProject(page);
   await page.getByText("Region and ground").waitFor();
   if (!(await page.getByLabel(/^Tile size/).isVisible())) {
     await page.getByText("Region and ground").click();
@@ -78,13 +81,6 @@ async function askForTiles(page: Page): Promise<void> {
   }
   await expect(plan(page)).toBeVisible();
   await expect(plan(page).locator(".tile")).toHaveCount(2);
-}
-
-/** The bytes of the city model, as a person saves them. */
-async function savedModel(page: Page): Promise<string> {
-  const downloading = page.waitForEvent("download");
-  await page.getByRole("button", { name: "model.city.json", exact: true }).click();
-  return readFileSync(await (await downloading).path(), "utf8");
 }
 
 test("a plan is there before anything long, and the region is drawn on it or stated", async ({ page }) => {
@@ -216,7 +212,7 @@ test("tiles that are done stay over a cancelled run and a reload, and give the s
   await plan(page).getByRole("button", { name: "Go on: 1 of 2 tiles" }).click();
   await expect(progress).toContainText("1 of 2 tiles");
   await waitForStage(page, "model", 200_000);
-  const resumed = await savedModel(page);
+  const resumed = (await save(page, "model.city.json")).toString();
 
   // The same without an interruption, in a browser that keeps nothing.
   const fresh = await browser.newPage({ viewport: { width: 1280, height: 800 } });
@@ -226,7 +222,7 @@ test("tiles that are done stay over a cancelled run and a reload, and give the s
   await expect(plan(fresh).locator(".tile.done")).toHaveCount(0);
   await fresh.getByRole("button", { name: "Reconstruct 2 tiles" }).click();
   await waitForStage(fresh, "model", 300_000);
-  expect(await savedModel(fresh)).toBe(resumed);
+  expect((await save(fresh, "model.city.json")).toString()).toBe(resumed);
   await fresh.close();
   expect(Object.keys(JSON.parse(resumed).CityObjects)).toHaveLength(1);
   expect(problems).toEqual([]);
@@ -261,7 +257,7 @@ test("a folder is read again after a reload, and not copied", async ({ page }) =
     },
     houseFiles().map(({ name, buffer }) => ({ name, base64: buffer.toString("base64") })),
   );
-  await page.getByRole("button", { name: "Folder…" }).click();
+  await page.getByRole("button", { name: "open a folder" }).click();
   await expect(page.locator(".status.good")).toHaveCount(6);
   await expect(page.getByTestId("kept")).toContainText("0.0 MB");
   await page.waitForTimeout(600);

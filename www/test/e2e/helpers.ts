@@ -101,13 +101,91 @@ export async function give(page: Page, files: Upload[]): Promise<void> {
   await page.getByTestId("file-input").setInputFiles(files);
 }
 
+/** Turns to a face of the page, unless it is there. */
+export async function showFace(page: Page, name: "Result" | "Method"): Promise<void> {
+  const button = page.getByRole("group", { name: "Face" }).getByRole("button", { name });
+  if ((await button.getAttribute("aria-pressed")) !== "true") {
+    await button.click();
+  }
+}
+
+/** Opens the panel of the project, or the one that it took the place of. */
+export async function showProject(page: Page, shows = true): Promise<void> {
+  const button = page.getByRole("button", { name: /^Project:/ });
+  if ((await button.getAttribute("aria-expanded")) !== String(shows)) {
+    await button.click();
+  }
+}
+
+/** The example, at the entrance or over an open project. */
+export async function openDemo(page: Page): Promise<void> {
+  const door = page.getByRole("button", { name: "Show me on the example" });
+  const again = page.getByRole("button", { name: "Demo scene" });
+  await expect(door.or(again)).toBeVisible();
+  await door.or(again).click();
+}
+
+/** What runs all stages, in either face. */
+export function runButton(page: Page): Locator {
+  return page.getByRole("button", { name: /^(Run all|Reconstruct|Reconstruct again)$/ });
+}
+
+export async function runUpTo(page: Page, title: string): Promise<void> {
+  await showFace(page, "Method");
+  await page.getByRole("button", { name: `Run up to ${title}`, exact: true }).click();
+}
+
+export async function chooseMethod(page: Page, title: string): Promise<void> {
+  await showFace(page, "Method");
+  await page.getByRole("button", { name: /^Method:/ }).click();
+  await page.getByRole("button", { name: title, exact: true }).click();
+  await page.keyboard.press("Escape");
+}
+
+/** Switches a layer of the 3D view, or how the model looks. */
+export async function switchLayer(page: Page, name: string): Promise<void> {
+  const menu = page.getByRole("button", { name: "Layers", exact: true });
+  await menu.click();
+  await page.locator(".menu-body").getByRole("button", { name, exact: true }).click();
+  await page.keyboard.press("Escape");
+  // Neither focus nor pointer is left in the picture.
+  await menu.blur();
+  await page.mouse.move(0, 0);
+}
+
+/** The entry of an output file, in the opened menu. */
+export async function output(page: Page, name: string): Promise<Locator> {
+  await showFace(page, "Result");
+  const menu = page.getByRole("button", { name: "Download", exact: true });
+  await expect(menu).toBeEnabled({ timeout: 120_000 });
+  if ((await menu.getAttribute("aria-expanded")) !== "true") {
+    await menu.click();
+  }
+  const entry = page.getByRole("button", { name, exact: true });
+  await expect(entry).toBeVisible();
+  return entry;
+}
+
+/** Saves an output file; its bytes. */
+export async function save(page: Page, name: string): Promise<Buffer> {
+  const entry = await output(page, name);
+  const [download] = await Promise.all([page.waitForEvent("download"), entry.click()]);
+  expect(download.suggestedFilename()).toBe(name === "Save project" ? "ridgeline-project.zip" : name);
+  await page.keyboard.press("Escape");
+  return readFileSync(await download.path());
+}
+
 /** Opens the parameters, which are closed at first, and a section of them. */
-export async function openParameters(page: Page, section: string): Promise<void> {
+export async function openParameters(page: Page, section?: string): Promise<void> {
+  await showFace(page, "Method");
+  await showProject(page, false);
   const all = page.locator("details.parameters");
   if ((await all.getAttribute("open")) === null) {
     await all.getByRole("heading", { name: "Parameters" }).click();
   }
-  await all.getByText(section, { exact: true }).click();
+  if (section !== undefined) {
+    await all.getByText(section, { exact: true }).click();
+  }
 }
 
 export function stage(page: Page, name: string): Locator {
@@ -118,8 +196,14 @@ export async function waitForStage(page: Page, name: string, timeout = 200_000):
   await expect(stage(page, name)).toHaveAttribute("data-status", "done", { timeout });
 }
 
+/** The tab of a stage; what the stage found is part of its name. */
+export function tabOf(page: Page, title: string): Locator {
+  return page.getByRole("tab").filter({ has: page.locator("b").getByText(title, { exact: true }) });
+}
+
 export async function openTab(page: Page, name: string): Promise<void> {
-  await page.getByRole("tab", { name, exact: true }).click();
+  await showFace(page, "Method");
+  await tabOf(page, name).click();
 }
 
 /** Clicks over an element until something is as wanted. */
@@ -232,7 +316,7 @@ export function watch(page: Page): { problems: string[] } {
 export async function reopen(page: Page, tab: string, fields: string): Promise<void> {
   await page.goto(`/#${fields}`);
   // Before the tab is there the address may still be that of the state before.
-  await expect(page.getByRole("tab", { name: tab })).toHaveAttribute("aria-selected", "true");
+  await expect(tabOf(page, tab)).toHaveAttribute("aria-selected", "true");
   await page.reload();
 }
 

@@ -7,6 +7,10 @@ import {
   give,
   houseFiles,
   housePmatrix,
+  openDemo,
+  runButton,
+  runUpTo,
+  showProject,
   type Upload,
   upload,
   waitForStage,
@@ -184,7 +188,7 @@ for (const [i, { what, files, says }] of BAD_INPUTS.entries()) {
     await expect(alert).toContainText(says);
     // The page lives on: seen after some of them, since one way leads back from all.
     if (i % 4 === 0) {
-      await page.getByRole("button", { name: "Demo scene" }).click();
+      await openDemo(page);
       await waitForStage(page, "segments", 60_000);
       await expect(page.getByRole("alert")).toHaveCount(0);
     }
@@ -194,7 +198,7 @@ for (const [i, { what, files, says }] of BAD_INPUTS.entries()) {
 
 test("files may be dropped anywhere on the page", async ({ page }) => {
   await page.goto("/");
-  await expect(page.getByRole("button", { name: "Demo scene" })).toBeEnabled();
+  await expect(page.getByTestId("entrance")).toBeVisible();
   const given = houseFiles().map(({ name, buffer }) => ({ name, base64: buffer.toString("base64") }));
   const dataTransfer = await page.evaluateHandle((files) => {
     const transfer = new DataTransfer();
@@ -203,11 +207,11 @@ test("files may be dropped anywhere on the page", async ({ page }) => {
     }
     return transfer;
   }, given);
-  const zone = page.getByRole("region", { name: "Add files" });
+  const zone = page.locator(".doors");
   await page.dispatchEvent("main", "dragover", { dataTransfer });
   await expect(zone).toHaveClass(/over/);
   await page.dispatchEvent("main", "drop", { dataTransfer });
-  await expect(zone).not.toHaveClass(/over/);
+  await expect(page.locator(".over:is(.doors, .dropzone)")).toHaveCount(0);
   await expect(page.locator(".view .status.good")).toHaveCount(6);
 });
 
@@ -278,6 +282,7 @@ test("the orientation, the views and the region can be chosen", async ({ page })
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await expect(page.getByRole("group", { name: "View" }).getByRole("button")).toHaveCount(6);
 
+  await showProject(page);
   await page.getByText("Region and ground").click();
   await page.getByLabel(/Region/).fill("1, 2, 3");
   await page.getByLabel(/Region/).press("Enter");
@@ -288,7 +293,7 @@ test("the orientation, the views and the region can be chosen", async ({ page })
   await page.getByLabel(/Height of the ground/).fill("");
   await page.getByLabel(/Height of the ground/).press("Enter");
   await expect(page.getByRole("alert")).toHaveCount(0);
-  await expect(page.getByRole("button", { name: "Run all" })).toBeEnabled();
+  await expect(runButton(page)).toBeEnabled();
   expect(problems).toEqual([]);
 });
 
@@ -296,6 +301,7 @@ test("what is being typed stays while the page is drawn anew", async ({ page }) 
   await page.goto("/");
   await give(page, houseFiles());
   await expect(page.locator(".status.good")).toHaveCount(6);
+  await showProject(page);
   await page.getByText("Region and ground").click();
   const height = page.getByLabel(/Height of the ground/);
   await height.fill("99999");
@@ -315,6 +321,7 @@ test("what is too large is loaded by a region of it", async ({ page }) => {
     await page.getByLabel(label).fill(value);
     await page.getByLabel(label).press("Enter");
   };
+  await showProject(page);
   await page.getByText("Region and ground").click();
   await ask(/Height of the ground/, "0");
   await expect(page.getByRole("alert")).toContainText("MB of memory");
@@ -323,7 +330,7 @@ test("what is too large is loaded by a region of it", async ({ page }) => {
   await ask(/Region/, "-20, -20, 20, 20");
   await expect(page.getByRole("alert")).toHaveCount(0);
   await expect(page.getByText(/about [2-9]\d\d MB of memory/)).toBeVisible();
-  await expect(page.getByRole("button", { name: "Run all" })).toBeEnabled();
+  await expect(runButton(page)).toBeEnabled();
   // The parts of the views that show the region.
   await expect(page.getByRole("group", { name: "View" }).getByRole("button")).toHaveCount(4);
   // In tiles, all of it.
@@ -353,7 +360,7 @@ test("photographs in an archive have their small pictures once they are loaded",
   await give(page, [upload("house.zip", Buffer.from(zipSync(files)))]);
   const pictures = page.locator(".view canvas.thumbnail");
   await expect(pictures).toHaveCount(6);
-  await page.getByRole("button", { name: "Run up to Segments" }).click();
+  await runUpTo(page, "Segments");
   await waitForStage(page, "segments");
   const isPainted = (canvas: HTMLCanvasElement) => {
     const pixels = canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height).data ?? [];

@@ -1,6 +1,21 @@
 /** What lasts: the project over reloads, and the page without a network. */
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, openParameters, storedKeys, waitForStage, watch } from "./helpers";
+import {
+  chooseMethod,
+  give,
+  houseFiles,
+  openDemo,
+  openParameters,
+  runButton,
+  runUpTo,
+  showFace,
+  showProject,
+  stage,
+  storedKeys,
+  upload,
+  waitForStage,
+  watch,
+} from "./helpers";
 
 test("what was removed comes back on request", async ({ page }) => {
   await page.goto("/");
@@ -19,10 +34,56 @@ test("what was removed comes back on request", async ({ page }) => {
     await expect(views).toHaveCount(again);
   }
   await expect(page.getByRole("button", { name: "Undo" })).toHaveCount(0);
+  await showProject(page);
   await page.getByRole("button", { name: "New project" }).click();
   await expect(page.locator(".view")).toHaveCount(0);
   await page.getByRole("button", { name: "Undo" }).click();
   await expect(page.locator(".status.good")).toHaveCount(6);
+});
+
+test("another method, a file and the example take nothing away", async ({ page }) => {
+  test.slow();
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, houseFiles());
+  await runButton(page).click();
+  await waitForStage(page, "model");
+  const found = await stage(page, "lines").textContent();
+
+  await test.step("a method keeps what it found", async () => {
+    await chooseMethod(page, "Rectangles");
+    await expect(stage(page, "regions")).toHaveAttribute("data-status", "waiting");
+    await chooseMethod(page, "Lines");
+    await expect(stage(page, "model")).toHaveAttribute("data-status", "done");
+    // Nothing has run since: the worker holds it, too.
+    await expect(runButton(page)).toBeDisabled();
+  });
+
+  await test.step("a file that is added leaves the result in view, outdated, and is taken back", async () => {
+    await showFace(page, "Result");
+    await give(page, [upload("notes.txt", Buffer.from("of the flight"))]);
+    await expect(page.getByText("notes.txt added")).toBeVisible();
+    await expect(stage(page, "model")).toHaveAttribute("data-status", "outdated");
+    await expect(page.getByRole("button", { name: "Model", exact: true })).toHaveAttribute(
+      "aria-pressed",
+      "true",
+    );
+    await expect(page.getByRole("button", { name: "Reconstruct again" })).toBeEnabled();
+    await page.getByRole("button", { name: "Undo adding" }).click();
+    await expect(stage(page, "model")).toHaveAttribute("data-status", "done");
+  });
+
+  await test.step("the example takes the place of a project, which comes back by Ctrl+Z", async () => {
+    await showProject(page);
+    await openDemo(page);
+    await expect(page.getByRole("button", { name: "Project: Detached houses" })).toBeVisible();
+    await waitForStage(page, "matches");
+    await page.locator("body").press("Control+z");
+    await expect(page.getByRole("button", { name: "Project: Own files" })).toBeVisible();
+    await expect(stage(page, "model")).toHaveAttribute("data-status", "done");
+    expect(await stage(page, "lines").textContent()).toBe(found);
+  });
+  expect(problems).toEqual([]);
 });
 
 test("a reload keeps the project until it is deleted", async ({ page }) => {
@@ -40,11 +101,13 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
 
   await page.goto("about:blank");
   await page.goto("/");
+  await showProject(page);
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await expect(page.locator("#param-texture-padding_px")).toHaveValue("5");
-  await page.getByRole("button", { name: "Run up to Segments" }).click();
+  await runUpTo(page, "Segments");
   await waitForStage(page, "segments");
 
+  await showProject(page);
   await page.getByTestId("kept").getByRole("button", { name: "Delete" }).click();
   await expect(page.getByTestId("entrance")).toBeVisible();
   await expect.poll(() => page.evaluate(storedKeys)).toEqual([]);
@@ -63,7 +126,7 @@ test("the page and the demo scene work without a network after the first load", 
     .toBe(true);
   await context.setOffline(true);
   await page.reload();
-  await page.getByRole("button", { name: "Demo scene" }).click();
+  await openDemo(page);
   await waitForStage(page, "segments", 60_000);
   await expect(page.getByRole("alert")).toHaveCount(0);
 });

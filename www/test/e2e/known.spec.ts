@@ -1,7 +1,17 @@
 /** Terrain and footprints that are dropped with the photographs: what they are taken as, and what the images say of them. */
-import { readFileSync } from "node:fs";
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, openTab, type Upload, upload, waitForStage, watch } from "./helpers";
+import {
+  give,
+  houseFiles,
+  openTab,
+  runButton,
+  save,
+  showProject,
+  type Upload,
+  upload,
+  waitForStage,
+  watch,
+} from "./helpers";
 
 type Ring = [number, number][];
 
@@ -43,27 +53,25 @@ test("terrain and footprints are listed, compared with the images, and left out 
   await give(page, houseFiles());
   await expect(page.locator(".status.good")).toHaveCount(6);
   await expect(page.getByTestId("known-files")).toHaveCount(0);
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "model");
-  const [download] = await Promise.all([
-    page.waitForEvent("download"),
-    page.getByRole("button", { name: "footprints.geojson" }).click(),
-  ]);
-  const [house] = JSON.parse(readFileSync(await download.path(), "utf8")).features;
+  const [house] = JSON.parse((await save(page, "footprints.geojson")).toString()).features;
   const { coordinates } = house.geometry as { coordinates: Ring[] };
 
   await give(page, [
     register({ "House 1": coordinates, "On the lawn": square(8, 6) }),
     levelTerrain(house.properties.ground_m),
   ]);
+  await showProject(page);
   const files = page.getByTestId("known-files");
   await expect(files.getByRole("listitem")).toHaveCount(2);
   await expect(files.getByRole("listitem").nth(0)).toContainText("taken as the terrain");
   await expect(files.getByRole("listitem").nth(1)).toContainText("taken as the footprints");
 
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "facets");
   await openTab(page, "Half-planes");
+  await showProject(page, false);
   await expect(page.getByTestId("known-terrain")).toContainText("The images confirm it");
   await expect(page.getByTestId("known-footprints")).toHaveCount(0);
   await openTab(page, "Facets");
@@ -87,6 +95,7 @@ test("terrain and footprints are listed, compared with the images, and left out 
 
   await test.step("a file is left out, and taken again", async () => {
     const use = page.getByLabel("Use houses.geojson");
+    await showProject(page);
     await use.uncheck();
     await expect(files.getByRole("listitem").nth(1)).toContainText("left out");
     await expect(files.getByRole("listitem").nth(0)).toContainText("taken as the terrain");

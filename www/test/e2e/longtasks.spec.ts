@@ -1,6 +1,6 @@
 /** The page stays at hand while the pipeline runs: no task of the main thread over 100 ms. */
 import { expect, test } from "@playwright/test";
-import { steadyLook, waitForStage } from "./helpers";
+import { openDemo, steadyLook, waitForStage } from "./helpers";
 
 const MOST_MS = 100;
 
@@ -75,7 +75,7 @@ test("nothing holds the page up while the pipeline runs", async ({ page }) => {
     Object.defineProperty(navigator, "hardwareConcurrency", { value: 1 });
   });
   await page.goto("/");
-  await page.getByRole("button", { name: "Demo scene" }).click();
+  await openDemo(page);
   await waitForStage(page, "model");
   const tasks = await page.evaluate(() => window.longTasks);
   test.info().annotations.push({ type: "long tasks", description: JSON.stringify(tasks) });
@@ -95,7 +95,7 @@ test("all shaders are made before there is anything to show", async ({ page }) =
     before = now;
     expect(isSettled).toBe(true);
   }).toPass({ intervals: [3000], timeout: 60_000 });
-  await page.getByRole("button", { name: "Demo scene" }).click();
+  await openDemo(page);
   await waitForStage(page, "model");
   await steadyLook(page, page.getByTestId("viewer"));
   expect(await made()).toBe(before);

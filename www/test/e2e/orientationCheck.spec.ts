@@ -1,6 +1,6 @@
 /** The orientation check: it names the mistake, and undoes it on request. */
 import { expect, test } from "@playwright/test";
-import { demoImages, demoOrientation, give, waitForStage, watch } from "./helpers";
+import { demoImages, demoOrientation, give, runUpTo, showProject, waitForStage, watch } from "./helpers";
 
 test("a mistake in the orientation is undone with one click", async ({ page }) => {
   const { problems } = watch(page);
@@ -24,9 +24,10 @@ test("a mistake in the orientation is undone with one click", async ({ page }) =
   await check.getByRole("button", { name: "Apply the fix" }).click();
   await expect(page.getByRole("alert")).toHaveCount(0, { timeout: 60_000 });
   await expect(page.locator(".warnings")).toContainText("the orientation was corrected");
-  await page.getByRole("button", { name: "Run up to 3D lines" }).click();
+  await runUpTo(page, "3D lines");
   await waitForStage(page, "lines");
   await expect(page.locator('[data-stage="lines"]')).toContainText(/[1-9]\d* lines/);
+  await showProject(page);
   await page.getByRole("button", { name: "Take the orientation as it is" }).click();
   await expect(page.getByTestId("orientation-check")).toBeVisible({ timeout: 60_000 });
   expect(problems).toEqual([]);

@@ -1,12 +1,18 @@
 /** The other method (W96) and its four stages. */
 import { expect, test } from "@playwright/test";
 import {
+  chooseMethod,
   lookOf,
   looksOfHalves,
+  openDemo,
   openParameters,
   openTab,
+  runUpTo,
+  showFace,
   stage,
   steadyLook,
+  switchLayer,
+  tabOf,
   waitForStage,
   watch,
 } from "./helpers";
@@ -22,11 +28,11 @@ test("a method that is chosen while the core is still compiled stays chosen", as
     await route.continue();
   });
   await page.goto("/#scene=demo&tab=images");
-  await page.getByRole("button", { name: "Rectangles", exact: true }).click();
+  await chooseMethod(page, "Rectangles");
   go();
   await expect(stage(page, "regions")).toBeVisible();
   await expect(stage(page, "segments")).toHaveCount(0);
-  await expect(page.getByRole("tab", { name: "Clusters" })).toBeVisible();
+  await expect(tabOf(page, "Clusters")).toBeVisible();
   expect(problems).toEqual([]);
 });
 
@@ -35,9 +41,10 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
   test.slow();
   const { problems } = watch(page);
   await page.goto("/#method=rectangles");
-  await page.getByRole("button", { name: "Demo scene" }).click();
-  await expect(page.getByRole("tab", { name: "Clusters" })).toBeVisible();
-  await expect(page.getByRole("tab", { name: "Half-planes" })).toHaveCount(0);
+  await openDemo(page);
+  await showFace(page, "Method");
+  await expect(tabOf(page, "Clusters")).toBeVisible();
+  await expect(tabOf(page, "Half-planes")).toHaveCount(0);
   await expect(stage(page, "regions")).toBeVisible();
   await expect(stage(page, "segments")).toHaveCount(0);
   await waitForStage(page, "model");
@@ -115,9 +122,9 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
   await test.step("the other method begins anew on the same files, and is compared with this one", async () => {
     const facets = /(\d+) facets/.exec((await stage(page, "rectangles").textContent()) ?? "")?.[1] ?? "";
     await page.getByRole("button", { name: "Compare", exact: true }).click();
-    await page.getByRole("button", { name: "Lines", exact: true }).click();
+    await chooseMethod(page, "Lines");
     await expect(stage(page, "segments")).toHaveAttribute("data-status", "waiting");
-    await page.getByRole("button", { name: "Run up to Facets" }).click();
+    await runUpTo(page, "Facets");
     await waitForStage(page, "facets");
     const others = /(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1] ?? "";
     const row = page.getByTestId("comparison").getByRole("row", { name: /^Facets/ });
@@ -126,17 +133,17 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     const halves = page.getByTestId("halves");
     await expect(halves.getByRole("paragraph")).toHaveText(["Kept: Rectangles", "Now: Lines"]);
     // Without the present facets the right half is empty, and the kept ones stay in the left.
-    const present = page.getByRole("group", { name: "Layers" }).getByRole("button", { name: "Facets" });
+    const turnPresent = () => switchLayer(page, "Facets");
     await steadyLook(page, viewer);
     const [kept, now] = await looksOfHalves(page, viewer);
     expect(kept.vivid).toBeGreaterThan(0.01);
-    await present.click();
+    await turnPresent();
     await expect(async () => {
       const [keptAlone, without] = await looksOfHalves(page, viewer);
       expect(keptAlone.vivid).toBe(kept.vivid);
       expect(without.vivid).toBeLessThan(0.1 * now.vivid);
     }).toPass({ timeout: 20_000 });
-    await present.click();
+    await turnPresent();
     await page.getByRole("button", { name: "Outlines over it" }).click();
     await expect(halves).toHaveCount(0);
     const both = await lookOf(page, viewer);

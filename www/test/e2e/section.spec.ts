@@ -1,6 +1,6 @@
 /** The section tool: two clicks cut the model and draw its profile. And the uncertainty of lines. */
 import { expect, type Locator, type Page, test } from "@playwright/test";
-import { lookOf, openTab, steadyLook, waitForStage, watch } from "./helpers";
+import { lookOf, openDemo, openTab, steadyLook, switchLayer, waitForStage, watch } from "./helpers";
 
 /** Clicks a place of the viewer, as shares of its width and height. */
 async function clickAt(viewer: Locator, x: number, y: number): Promise<void> {
@@ -10,7 +10,7 @@ async function clickAt(viewer: Locator, x: number, y: number): Promise<void> {
 
 async function openModel(page: Page): Promise<Locator> {
   await page.goto("/");
-  await page.getByRole("button", { name: "Demo scene" }).click();
+  await openDemo(page);
   await waitForStage(page, "model");
   // The camera stands where the preliminary model put it.
   await page.getByRole("button", { name: "Fit" }).click();
@@ -20,7 +20,7 @@ async function openModel(page: Page): Promise<Locator> {
 test("a cut through the model shows its profile, and lines their uncertainty", async ({ page }) => {
   const { problems } = watch(page);
   const viewer = await openModel(page);
-  await page.getByRole("button", { name: "Plain" }).click();
+  await switchLayer(page, "Plain");
   const whole = await steadyLook(page, viewer);
 
   await test.step("two clicks make a section", async () => {
@@ -60,7 +60,7 @@ test("a cut through the model shows its profile, and lines their uncertainty", a
   await test.step("tubes about the lines, and their scale in the legend", async () => {
     await openTab(page, "3D lines");
     const plain = await steadyLook(page, viewer);
-    await page.getByRole("button", { name: "Uncertainty" }).click();
+    await switchLayer(page, "Uncertainty");
     await expect(page.getByText(/^1 σ, drawn \d+ × as large$/)).toBeVisible();
     await expect(async () => {
       expect((await lookOf(page, viewer)).vivid).toBeGreaterThan(1.1 * plain.vivid);

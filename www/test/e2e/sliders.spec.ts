@@ -1,12 +1,12 @@
 /** A parameter that is dragged runs its stage again, and the others once it is let go. */
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, stage, waitForStage, watch } from "./helpers";
+import { give, houseFiles, openParameters, runButton, stage, waitForStage, watch } from "./helpers";
 
 test("a slider runs the stage of its parameter, and the later ones when it is let go", async ({ page }) => {
   const { problems } = watch(page);
   await page.goto("/");
   await give(page, houseFiles());
-  await page.locator("details.parameters").getByRole("heading", { name: "Parameters" }).click();
+  await openParameters(page);
   const slider = page.getByRole("slider", { name: /Minimum length/ });
   const count = stage(page, "segments").locator(".counts");
 
@@ -16,7 +16,7 @@ test("a slider runs the stage of its parameter, and the later ones when it is le
     await expect(stage(page, "segments")).toHaveAttribute("data-status", "waiting");
   });
 
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "model");
   const before = Number.parseInt(await count.innerText(), 10);
 

@@ -10,6 +10,10 @@ import {
   houseFiles,
   MAY_SKIP,
   openParameters,
+  output,
+  runButton,
+  save,
+  showProject,
   stage,
   upload,
   waitForStage,
@@ -29,13 +33,6 @@ function reconstruct(files: { name: string; buffer: Buffer }[], scene: string, m
   return out;
 }
 
-/** The bytes of an output file, as a person saves them. */
-async function saved(page: Page, name: string): Promise<Buffer> {
-  const downloading = page.waitForEvent("download");
-  await page.getByRole("button", { name, exact: true }).click();
-  return readFileSync(await (await downloading).path());
-}
-
 async function askFor(page: Page, label: RegExp, value: string): Promise<void> {
   await page.getByLabel(label).fill(value);
   await page.getByLabel(label).press("Enter");
@@ -47,6 +44,7 @@ test("tiles run one after the other into the model of the command line", async (
   await page.goto("/");
   await give(page, houseFiles());
   await expect(page.locator(".status.good")).toHaveCount(6);
+  await showProject(page);
   await page.getByText("Region and ground").click();
   await askFor(page, /Tile size/, "10");
   await expect(page.getByText("60 m or more")).toBeVisible();
@@ -55,16 +53,16 @@ test("tiles run one after the other into the model of the command line", async (
   await askFor(page, /Tile size/, "60");
 
   // Cancelled in the middle, and begun again.
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await expect(stage(page, "model")).toHaveAttribute("data-status", "running");
   await expect(stage(page, "model")).toContainText(/[1-9]\d* %/, { timeout: 120_000 });
   await page.getByRole("button", { name: "Cancel" }).click();
   await expect(stage(page, "model")).toHaveAttribute("data-status", "waiting");
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "model", 300_000);
   await expect(stage(page, "model")).toContainText("4 tiles");
-  const model = await saved(page, "model.city.json");
-  const atlas = await saved(page, "model_atlas.jpg");
+  const model = await save(page, "model.city.json");
+  const atlas = await save(page, "model_atlas.jpg");
   expect(Object.keys(JSON.parse(model.toString()).CityObjects)).toHaveLength(1);
   expect(problems).toEqual([]);
 
@@ -83,28 +81,31 @@ test("a project opens again to the same state, here and on the command line", as
   await expect(page.locator(".status.good")).toHaveCount(6);
   await page.locator(".view input[type=checkbox]").nth(2).uncheck();
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
+  await showProject(page);
   await page.getByText("Region and ground").click();
   await askFor(page, /Height of the ground/, "100");
   await openParameters(page, "Texture");
   await page.locator("#param-texture-padding_px").fill("5");
   await page.locator("#param-texture-padding_px").press("Enter");
-  await page.getByRole("button", { name: "Run all" }).click();
+  await runButton(page).click();
   await waitForStage(page, "model");
-  const model = await saved(page, "model.city.json");
-  const project = await saved(page, "Save project");
+  const model = await save(page, "model.city.json");
+  const project = await save(page, "Save project");
 
+  await showProject(page);
   await page.getByRole("button", { name: "New project" }).click();
   await give(page, [upload("house.zip", project)]);
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await expect(page.getByLabel(/Height of the ground/)).toHaveValue("100");
+  await openParameters(page);
   await expect(page.locator("#param-texture-padding_px")).toHaveValue("5");
   // Its results are shown without a run.
   await waitForStage(page, "model", 20_000);
   await expect(page.getByText("Nothing to show yet.")).toHaveCount(0);
-  await expect(page.getByRole("button", { name: "model.glb" })).toBeVisible();
-  await page.getByRole("button", { name: "Run all" }).click();
+  await expect(await output(page, "model.glb")).toBeVisible();
+  await runButton(page).click();
   await waitForStage(page, "model");
-  expect((await saved(page, "model.city.json")).equals(model)).toBe(true);
+  expect((await save(page, "model.city.json")).equals(model)).toBe(true);
   expect(problems).toEqual([]);
 
   test.skip(MAY_SKIP, `there is no ${BINARY} to compare with`);

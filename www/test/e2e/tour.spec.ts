@@ -1,6 +1,6 @@
 /** The guided tour: every question can be answered in the view that it is about, and not by anything else. */
 import { expect, type Locator, type Page, test } from "@playwright/test";
-import { onePage, pickUntil, waitForStage } from "./helpers";
+import { onePage, pickUntil, tabOf, waitForStage } from "./helpers";
 
 let page: Page;
 
@@ -32,7 +32,7 @@ async function isAsked(step: number, tab: string): Promise<void> {
     await panel().getByRole("button", { name: "Next" }).click();
   }
   await expect(panel()).toContainText(`Step ${step} of 12`);
-  await expect(page.getByRole("tab", { name: tab, exact: true })).toHaveAttribute("aria-selected", "true", {
+  await expect(tabOf(page, tab)).toHaveAttribute("aria-selected", "true", {
     timeout: 120_000,
   });
   await expect(panel()).toContainText("Not found yet.");

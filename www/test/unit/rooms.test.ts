@@ -48,6 +48,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "stages/tours",
       "app/tour",
       "app/view/stages",
+      "app/view/result",
       "app/project/entrance",
       "app/shell",
     ],
@@ -239,7 +240,7 @@ describe("the rooms of the page", () => {
 });
 
 describe("figures in other pages", () => {
-  it("hold nothing of the page's state but the size of text, and nothing that draws space", () => {
+  it("hold nothing of the page's state but the size of text and how it is kept, and nothing that draws space", () => {
     const reached = new Set<string>();
     const walk = (path: string) => {
       if (!reached.has(path)) {
@@ -256,7 +257,7 @@ describe("figures in other pages", () => {
     const held = [...reached].filter((path) =>
       /^app\/(state|session|project|view\/space|shell)\//.test(path),
     );
-    expect(held).toEqual(["app/state/textScale.ts"]);
+    expect(held).toEqual(["app/state/textScale.ts", "app/state/keptChoice.ts"]);
     const drawing = [...reached].filter((path) =>
       /from "three"/.test(readFileSync(join(SOURCES, path), "utf8")),
     );

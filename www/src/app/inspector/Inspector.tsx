@@ -4,7 +4,7 @@ import "./inspector.css";
 import { placeAmong, rowsOf, siblingsOf, titleOf } from "../../kinds/kinds";
 import type { Bars, Related, Row } from "../../kinds/parts/rows";
 import { pageFigure } from "../selection/selectionQueries";
-import { select, selection, tab } from "../state/viewState";
+import { face, select, selection, tab } from "../state/viewState";
 import { EvidenceBars } from "./EvidenceBars";
 
 export function Inspector() {
@@ -13,7 +13,7 @@ export function Inspector() {
   return (
     <section class="panel" data-testid="inspector">
       <div class="row">
-        <h2>Inspector</h2>
+        <h2>{face.value === "result" ? "Selected" : "Inspector"}</h2>
         <span class="grow" />
         <Steps />
         {picked !== null && (

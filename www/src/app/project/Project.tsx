@@ -1,17 +1,15 @@
 /** The project: where files are dropped, and what each of them was recognised as. */
 import "./project.css";
-import { useEffect, useRef, useState } from "preact/hooks";
 import type { FileReport, ImageReport } from "../../shared/records";
 import { counted } from "../parts/counted";
+import { onPage } from "../session/failureNotice";
 import { isBusy } from "../state/activity";
-import { notify } from "../state/notices";
 import { files, inspection, isKnownKind, projectName, runOptions } from "../state/project";
 import { images, peakMb, scene } from "../state/scene";
 import { showsEntrance } from "../view/screen/opening";
-import { ArrivalHabit, ArrivalQuestion } from "./ArrivalQuestion";
-import { takeFiles } from "./arrivals";
-import { hasFolderPicker, pickFolder } from "./folders";
-import { baseName, droppedFiles, pickedFiles } from "./inputFiles";
+import { ArrivalHabit } from "./ArrivalQuestion";
+import { useFilePicker } from "./filePicker";
+import { baseName } from "./inputFiles";
 import { OrientationCheck } from "./OrientationCheck";
 import { clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
@@ -29,7 +27,6 @@ export function Project() {
           </button>
         )}
       </div>
-      <ArrivalQuestion />
       {!showsEntrance.value && <DropZone />}
       {files.value.length > 0 && <Views />}
       {files.value.length > 0 && <OtherFiles />}
@@ -49,107 +46,27 @@ export function Project() {
   );
 }
 
-/** The entrance has it while nothing is open: there is one at a time. */
-export function DropZone() {
-  const isOver = useFileDrop();
-  const fileInput = useRef<HTMLInputElement>(null);
-  const folderInput = useRef<HTMLInputElement>(null);
-  const isEmpty = files.value.length === 0;
-
-  const onPick = (event: Event) => {
-    const input = event.currentTarget as HTMLInputElement;
-    const picked = pickedFiles(input.files ?? new DataTransfer().files);
-    input.value = "";
-    void takeFiles(picked);
-  };
-
+/** More files of the project, or another one. */
+function DropZone() {
+  const { isOver, openFiles, openFolder, inputs } = useFilePicker();
   return (
     <section class={`dropzone ${isOver ? "over" : ""}`} aria-label="Add files">
-      <p>
-        {isEmpty
-          ? "Drop three or more overlapping photographs and their orientation files: files or a folder, in one go, anywhere on the page."
-          : "Drop more files here, or another project."}
-      </p>
-      {!isEmpty && <ArrivalHabit />}
-      {isEmpty && (
-        <p class="muted">
-          JPEG, PNG or TIFF; orientation as COLMAP, Metashape, Pix4D, OpenSfM, Bundler and others write it,
-          matrices, or X Y Z omega phi kappa lists; also in a .zip.
-        </p>
-      )}
+      <p>Drop more files here, or another project.</p>
+      <ArrivalHabit />
       <div class="row">
-        <button type="button" onClick={() => fileInput.current?.click()}>
+        <button type="button" onClick={openFiles}>
           Files…
         </button>
-        <button type="button" onClick={() => void openFolder(folderInput.current)}>
+        <button type="button" onClick={openFolder}>
           Folder…
         </button>
-        {!showsEntrance.value && (
-          <button type="button" class={isEmpty ? "primary" : ""} onClick={() => void openDemo()}>
-            Demo scene
-          </button>
-        )}
+        <button type="button" onClick={() => void openDemo()}>
+          Demo scene
+        </button>
       </div>
-      <input ref={fileInput} type="file" multiple hidden data-testid="file-input" onChange={onPick} />
-      <input
-        ref={folderInput}
-        type="file"
-        multiple
-        hidden
-        onChange={onPick}
-        {...({ webkitdirectory: true } as object)}
-      />
+      {inputs}
     </section>
   );
-}
-
-/** Asks for a folder in the way that lets the page read it again after a reload, where the browser has that. */
-async function openFolder(input: HTMLInputElement | null): Promise<void> {
-  if (!hasFolderPicker()) {
-    input?.click();
-    return;
-  }
-  try {
-    const picked = await pickFolder();
-    if (picked !== null) {
-      await takeFiles(picked);
-    }
-  } catch (error) {
-    notify({ severity: "error", title: "The folder cannot be read", text: String(error) });
-  }
-}
-
-/** Takes files that are dropped anywhere, which the browser would open in the page's place; tells whether some are held over it. */
-function useFileDrop(): boolean {
-  const [isOver, setOver] = useState(false);
-  useEffect(() => {
-    const end = new AbortController();
-    const on = (name: "dragover" | "dragleave" | "drop", hear: (event: DragEvent) => void) =>
-      window.addEventListener(name, hear, { signal: end.signal });
-    on("dragover", (event) => {
-      if (event.dataTransfer?.types.includes("Files")) {
-        event.preventDefault();
-        setOver(true);
-      }
-    });
-    // From part to part of the page nothing is left.
-    on("dragleave", ({ relatedTarget }) => {
-      if (relatedTarget === null) {
-        setOver(false);
-      }
-    });
-    on("drop", (event) => {
-      setOver(false);
-      if (event.dataTransfer?.types.includes("Files")) {
-        event.preventDefault();
-        droppedFiles(event.dataTransfer).then(takeFiles, (error: unknown) =>
-          notify({ severity: "error", title: "The dropped files cannot be read", text: String(error) }),
-        );
-      }
-    });
-    return () => end.abort();
-  }, []);
-  return isOver;
 }
 
 function Views() {
@@ -200,12 +117,22 @@ function ViewRow({ image }: { image: ImageReport }) {
         <span class="muted numbers">
           {image.size === null ? "unreadable" : `${image.size[0]} × ${image.size[1]} px`}
         </span>
-        <span class={`status ${image.orientation === null ? "bad" : "good"}`} title={image.orientation ?? ""}>
-          {image.orientation === null ? "no orientation" : "oriented"}
-        </span>
+        <Status image={image} />
       </div>
       <RemoveButton path={image.path} />
     </li>
+  );
+}
+
+/** What is being read, or was rejected, is not told to be good. */
+function Status({ image: { orientation } }: { image: ImageReport }) {
+  const isTaken = scene.value !== null || runOptions.value.tileM !== null;
+  const read = isBusy.value ? "orientation read" : "orientation read, not used";
+  const kind = orientation === null ? "bad" : isTaken ? "good" : "";
+  return (
+    <span class={`status ${kind}`} title={orientation ?? ""}>
+      {orientation === null ? "no orientation" : isTaken ? "oriented" : read}
+    </span>
   );
 }
 
@@ -276,7 +203,7 @@ function Warnings() {
       <h3>Warnings</h3>
       <ul class="warnings">
         {[...all].map((text) => (
-          <li key={text}>{text}</li>
+          <li key={text}>{onPage(text)}</li>
         ))}
       </ul>
       <Doubts />

@@ -4,7 +4,7 @@ import { useState } from "preact/hooks";
 import type { OrientationCandidate } from "../../shared/records";
 import { TextField } from "../parts/TextField";
 import { setParam } from "../session/stageRuns";
-import { type Parsed, parseHeight, parseRegion, parseTile } from "../settings/loadOptions";
+import { type Parsed, parseEpsg, parseHeight, parseRegion, parseTile } from "../settings/loadOptions";
 import { method, params } from "../state/parameters";
 import { inspection, runOptions } from "../state/project";
 import { setRunOptions } from "./projectActions";
@@ -47,11 +47,11 @@ const placeOpen = signal(false);
 
 /** Region of interest and height of the ground, both in the frame of the orientation. */
 export function PlaceFields() {
-  const { roi, groundZ, tileM } = runOptions.value;
+  const { roi, groundZ, tileM, epsg } = runOptions.value;
   return (
     <details
       class="params"
-      open={placeOpen.value || roi !== null || groundZ !== null || !isAdjusted()}
+      open={placeOpen.value || roi !== null || groundZ !== null || epsg !== null || !isAdjusted()}
       onToggle={(event) => {
         placeOpen.value = event.currentTarget.open;
       }}
@@ -72,6 +72,14 @@ export function PlaceFields() {
         value={groundZ}
         parse={parseHeight}
         onValue={(groundZ) => void setRunOptions({ groundZ })}
+      />
+      <OptionField
+        id="epsg"
+        label="Reference system (EPSG code)"
+        placeholder="as the files say"
+        value={epsg}
+        parse={parseEpsg}
+        onValue={(epsg) => void setRunOptions({ epsg })}
       />
       <OptionField
         id="tile"

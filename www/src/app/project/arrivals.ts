@@ -1,6 +1,7 @@
 /** Files that come while a project is open: a new project, or more of the present one? */
 import { type ReadonlySignal, signal } from "@preact/signals";
 import type { InputFile } from "../../shared/calls";
+import { notify } from "../state/notices";
 import { files, inspection, isDemo } from "../state/project";
 import { addFiles, openFiles } from "./projectActions";
 
@@ -17,11 +18,17 @@ export const chosenForVisit: ReadonlySignal<Choice | null> = habit;
 
 /** Takes files in; asks where it is not plain whether they belong to the present project. */
 export async function takeFiles(added: InputFile[]): Promise<void> {
-  if (!isWhole() || !isProject(added)) {
+  if (added.length === 0) {
+    notify({
+      severity: "info",
+      title: "There are no files in it",
+      text: "Choose a folder with photographs.",
+    });
+  } else if (!isWhole() || !isProject(added)) {
     await takeAs("add", added);
   } else if (habit.value !== null) {
     await takeAs(habit.value, added);
-  } else if (added.length > 0) {
+  } else {
     // Dropped on top of an open question, they are one answer.
     waiting.value = [...(waiting.value ?? []), ...added];
   }

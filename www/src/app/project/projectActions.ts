@@ -4,10 +4,12 @@ import type { InputFile } from "../../shared/calls";
 import { asTree } from "../../shared/paramTree";
 import type { StageName } from "../../shared/stages";
 import { stagesOf } from "../../stages/catalogue";
+import { counted } from "../parts/counted";
 import { saveFile } from "../parts/saveFile";
 import type { Turn } from "../session/actionQueue";
 import { refusalNotices } from "../session/failureNotice";
 import { forgetFlight, planFlight, proposeTiles } from "../session/flightPlanning";
+import { forgetMethods } from "../session/methodResults";
 import {
   actions,
   engine,
@@ -18,7 +20,15 @@ import {
   outdateScene,
   tellParams,
 } from "../session/session";
-import { clearResults, runEverything, runStages } from "../session/stageRuns";
+import { clearResults, runEverything, runStages, UNDO_ADDING } from "../session/stageRuns";
+import {
+  packResults,
+  presentResults,
+  type StoredResults,
+  showOutdated,
+  showStoredResults,
+  unpackResults,
+} from "../session/storedResults";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions, wishesOf } from "../settings/loadOptions";
 import { changedParams, paramsOf } from "../settings/parameterForm";
@@ -43,15 +53,11 @@ import {
 import { allResults } from "../state/results";
 import { clearScene, scene } from "../state/scene";
 import { replaceStages } from "../state/stages";
-import { showTab, showView, standAt } from "../state/viewState";
+import { showTab, showView, standAt, tab } from "../state/viewState";
+import { openPanel } from "../view/screen/panels";
+import { placeOf } from "./folders";
+import { baseName } from "./inputFiles";
 import type { StoredProject } from "./storedProject";
-import {
-  packResults,
-  presentResults,
-  type StoredResults,
-  showStoredResults,
-  unpackResults,
-} from "./storedResults";
 
 /** Adds files to the project (the same path replaces), inspects them, and loads the scene once it looks whole. */
 export async function addFiles(added: InputFile[]): Promise<void> {
@@ -65,37 +71,55 @@ export async function addFiles(added: InputFile[]): Promise<void> {
 
 /** The same as part of another action. */
 export async function addFilesIn(turn: Turn, added: readonly InputFile[]): Promise<void> {
-  removals = [];
+  const look = presentLook();
+  noteStep(`${added.length === 1 ? baseName(added[0]?.path ?? "") : counted(added.length, "files")} added`);
   const byPath = new Map(files.value.map((file) => [file.path, file]));
   for (const file of added) {
     byPath.set(file.path, file);
   }
   if (projectName.value === "") {
-    nameProject(OWN_FILES);
+    nameProject(nameOf(added));
+  }
+  if (look.found !== null) {
+    openPanel("project");
   }
   setProject([...byPath.values()]);
+  if (look.found !== null) {
+    offerUndo(UNDO_ADDING, "What they change is outdated: reconstruct again.");
+  }
   await loadProject(turn, adoptProject);
+  lookAgain(look);
   await adoptResults();
 }
 
-/** Begins a new project with these files: nothing of the present one stays. */
+/** Begins a new project with these files, in the place of the present one. */
 export async function openFiles(added: InputFile[]): Promise<void> {
   if (added.length === 0) {
     return;
   }
   await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, (turn) =>
-    openIn(turn, added, OWN_FILES),
+    openIn(turn, added, nameOf(added)),
   );
 }
 
-const OWN_FILES = "Own files";
+/** A project has the name of its folder, or of its archive. */
+function nameOf(all: readonly InputFile[]): string {
+  const [first] = all;
+  const relative = first?.blob instanceof File ? first.blob.webkitRelativePath : "";
+  const root = (path: string) => (path.includes("/") ? path.slice(0, path.indexOf("/")) : "");
+  const isCommon = first !== undefined && all.every(({ path }) => root(path) === root(first.path));
+  const archive = all.length === 1 ? (/^(.*)\.zip$/i.exec(baseName(first?.path ?? ""))?.[1] ?? "") : "";
+  const folder = first === undefined ? undefined : placeOf(first.blob)?.folder.name;
+  return folder || root(relative) || (isCommon && root(first.path)) || archive || "Own files";
+}
 
 /** The same as part of another action. */
 async function openIn(turn: Turn, next: InputFile[], name: string): Promise<void> {
-  removals = [];
+  noteStep(`“${projectName.value}” closed`);
   replaceFiles([]);
   nameProject(name);
   setProject(next);
+  offerUndo();
   await loadProject(turn, adoptProject);
   await adoptResults();
 }
@@ -150,7 +174,7 @@ export async function removeFile(path: string): Promise<void> {
     const left = files.value.filter((file) => file.path !== path);
     // A second click on the same file.
     if (left.length < files.value.length) {
-      remove(path.slice(path.lastIndexOf("/") + 1), left);
+      remove(baseName(path), left);
       await loadProject(turn);
     }
   });
@@ -160,51 +184,64 @@ export async function removeFile(path: string): Promise<void> {
 export async function clearProject(): Promise<void> {
   await actions.perform({ kind: "open", name: "nothing", phase: "load" }, () => {
     if (files.value.length > 0) {
-      remove("The project", []);
+      remove(`“${projectName.value}”`, []);
       nameProject("");
     }
   });
 }
 
 const UNDO = "Undo";
+/** So many steps are kept: each holds what had been found. */
+const MOST_STEPS = 8;
 
-/** What was removed since files came last, and the project before that; the last removal is taken back first. */
-let removals: { what: string; before: StoredProject; found: StoredResults | null }[] = [];
+/** What was done to the project in this visit, and how it was before that; the last step is taken back first. */
+let steps: { what: string; before: StoredProject; found: StoredResults | null }[] = [];
+
+/** Notes the project as it is, before it changes. */
+function noteStep(what: string): void {
+  if (files.value.length > 0) {
+    const before: StoredProject = {
+      name: projectName.value,
+      isDemo: isDemo.value,
+      files: files.value,
+      options: runOptions.value,
+      params: params.value,
+    };
+    steps = [...steps, { what, before, found: presentResults() }].slice(-MOST_STEPS);
+  }
+}
 
 /** Leaves some of the files, and offers to take that back. */
 function remove(what: string, left: InputFile[]): void {
-  const before: StoredProject = {
-    name: projectName.value,
-    isDemo: isDemo.value,
-    files: files.value,
-    options: runOptions.value,
-    params: params.value,
-  };
-  removals = [...removals, { what, before, found: presentResults() }];
+  noteStep(`${what} removed`);
   setProject(left);
   offerUndo();
 }
 
-/** Offers to take back the last removal, in place of any other one. */
-function offerUndo(): void {
+/** Offers to take back the last step, in place of any other one. */
+function offerUndo(name = UNDO, text = ""): void {
   dismissOffers(UNDO);
-  const last = removals.at(-1);
+  dismissOffers(UNDO_ADDING);
+  const last = steps.at(-1);
   if (last !== undefined) {
-    notify({
-      severity: "info",
-      title: `${last.what} was removed`,
-      text: "",
-      action: { name: UNDO, run: () => void undo(last.before, last.found) },
-    });
+    notify({ severity: "info", title: last.what, text, action: { name, run: () => void undo() } });
   }
 }
 
-async function undo(before: StoredProject, found: StoredResults | null): Promise<void> {
+/** Takes back the last step. */
+export async function undo(): Promise<void> {
   await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, async (turn) => {
-    removals = removals.slice(0, -1);
-    await restoreIn(turn, before, offerUndo);
-    if (found !== null && scene.value !== null) {
-      showStoredResults(found);
+    const last = steps.at(-1);
+    if (last === undefined) {
+      return;
+    }
+    steps = steps.slice(0, -1);
+    await restoreIn(turn, last.before, () => offerUndo());
+    if (last.found !== null && scene.value !== null) {
+      showStoredResults(last.found);
+    }
+    if (allResults.value.main.glb !== null) {
+      showTab("model");
     }
   });
 }
@@ -251,6 +288,7 @@ export async function openDemoIn(turn: Turn, target?: StageName | null): Promise
 /** Changes what is asked for beyond the files, and loads the scene again. */
 export async function setRunOptions(change: Partial<RunOptions>): Promise<void> {
   await actions.perform({ kind: "change", phase: "load", words: "Loading" }, async (turn) => {
+    const look = presentLook();
     outdateScene();
     outdateInspection();
     batch(() => {
@@ -266,7 +304,21 @@ export async function setRunOptions(change: Partial<RunOptions>): Promise<void> 
       closeScene();
     });
     await loadProject(turn);
+    lookAgain(look);
   });
+}
+
+/** What is found and looked at, before the scene is loaded again. */
+function presentLook() {
+  return { found: presentResults(), tab: tab.value };
+}
+
+/** The same afterwards, outdated. */
+function lookAgain(before: ReturnType<typeof presentLook>): void {
+  showOutdated(before.found);
+  if (before.found !== null && scene.value !== null) {
+    showTab(before.tab);
+  }
 }
 
 /** Has other files take the place of the project's. */
@@ -316,6 +368,7 @@ function closeScene(): void {
   showView(0);
   standAt(null);
   keepResult(null);
+  forgetMethods();
   clearResults();
 }
 

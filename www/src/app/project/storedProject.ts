@@ -2,11 +2,11 @@
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import type { InputFile } from "../../shared/calls";
 import type { ParamTree } from "../../shared/paramTree";
+import { presentResults, type StoredResults } from "../session/storedResults";
 import { isBusy } from "../state/activity";
 import { defaults, params } from "../state/parameters";
 import { files, isDemo, projectName, type RunOptions, runOptions } from "../state/project";
 import { askToRead, fileAt, isReadable, placeOf } from "./folders";
-import { presentResults, type StoredResults } from "./storedResults";
 import { forgetKeptTiles } from "./tiles/keptTiles";
 
 export interface StoredProject {

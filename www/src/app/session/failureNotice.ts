@@ -91,8 +91,14 @@ export function workerNotice(failure: Error): Omit<Notice, "id"> {
   };
 }
 
+/** The core's words without the options of the command line, which the page has fields for. */
+export function onPage(text: string): string {
+  return text.replaceAll(/\s*\([^()]*--[a-z][^()]*\)/g, "");
+}
+
 /** Separates what is wrong from what to do, at the last semicolon. */
-export function splitAdvice(message: string): { text: string; advice?: string } {
+export function splitAdvice(said: string): { text: string; advice?: string } {
+  const message = onPage(said);
   const at = message.lastIndexOf("; ");
   if (at < 0) {
     return { text: message };

@@ -26,7 +26,7 @@ import { ActionQueue } from "./actionQueue";
 import { failureNotice } from "./failureNotice";
 
 /** Whether the present worker holds the project's files, has the scene loaded, and was asked about them as they are wanted now. */
-const held = { files: false, scene: false, inspection: false, results: false };
+const held = { files: false, scene: false, inspection: false, results: null as object | null };
 
 export const engine = new Engine(
   (stage, fraction) => workerPool.engineReached(stage, fraction),
@@ -76,7 +76,7 @@ export async function cancel(): Promise<void> {
 
 /** Asks the core about its results; null while it has none, or is at work on others. */
 export async function ask<K extends CallName>(call: K, ...of: Args<K>): Promise<Result<K> | null> {
-  if (!held.results || runningStage.peek() !== null) {
+  if (held.results === null || runningStage.peek() !== null) {
     return null;
   }
   const asked = results.peek();
@@ -211,7 +211,7 @@ export function outdateFiles(): void {
 /** The scene is another one than the worker's, or the worker has dropped it. */
 export function outdateScene(): void {
   held.scene = false;
-  held.results = false;
+  dropResults();
   setFreshStages(0);
 }
 
@@ -222,10 +222,20 @@ export function outdateInspection(): void {
 
 /** The worker has results of its own, and can be asked about them. */
 export function noteResults(): void {
-  held.results = true;
+  held.results = {};
 }
 
-/** Whether it can. */
+/** It has none, or others than the page shows. */
+export function dropResults(): void {
+  held.results = null;
+}
+
+/** Whether it can be asked. */
 export function hasResults(): boolean {
+  return held.results !== null;
+}
+
+/** What it holds, to be told from what it holds later. */
+export function heldResults(): object | null {
   return held.results;
 }

@@ -7,9 +7,10 @@ import { firstStageOf, mainTabOf, shownTabOf, stagesOf, stageWords } from "../..
 import { fetchResults } from "../../stages/list";
 import { saveFile } from "../parts/saveFile";
 import { withParam } from "../settings/parameterForm";
+import { isBusy } from "../state/activity";
 import { announce, dismissOffers, notify } from "../state/notices";
 import { defaults, method, params, replaceParams } from "../state/parameters";
-import { files, runOptions } from "../state/project";
+import { files, hasPhotographsOnly, runOptions } from "../state/project";
 import {
   addResults,
   exportNames,
@@ -34,6 +35,7 @@ import { chooseWorkers, workers } from "../state/workers";
 import type { Turn } from "./actionQueue";
 import { workerNotice } from "./failureNotice";
 import { beginFirstLook, endFirstLook } from "./firstLook";
+import { keepMethod, showKeptMethod } from "./methodResults";
 import { actions, engine, ensureScene, followCameras, hasResults, noteResults, workerPool } from "./session";
 import { runTiles } from "./tiledRun";
 
@@ -60,12 +62,16 @@ export async function runEverything(turn: Turn): Promise<void> {
   }
 }
 
+/** On what is outdated once files have come: a run makes it up to date. */
+export const UNDO_ADDING = "Undo adding";
+
 /** Runs up to a stage as part of another action. */
 export async function runStages(turn: Turn, target: StageName): Promise<void> {
   turn.enter("run");
   if (files.value.length === 0) {
     return;
   }
+  dismissOffers(UNDO_ADDING);
   workerPool.hire(workers.value);
   await ensureScene();
   const names = stages.value.map(({ name }) => name);
@@ -86,6 +92,11 @@ export async function runStages(turn: Turn, target: StageName): Promise<void> {
   }
 }
 
+/** Whether there is something to run among the first `count` stages, and nothing else going on. */
+export function canRun(count: number): boolean {
+  return files.value.length > 0 && !hasPhotographsOnly.value && !isBusy.value && freshStages.value < count;
+}
+
 /** Changes the parameter at a path of names; stages that depend on it become outdated. */
 export function setParam(path: string, value: ParamValue): void {
   replaceParams(withParam(params.value, path, value));
@@ -97,7 +108,7 @@ export function setParam(path: string, value: ParamValue): void {
   );
 }
 
-/** Chooses the method: its stages take the place of the other's, and begin anew. */
+/** Chooses the method: its stages take the place of the other's, with what they have found before. */
 export async function setMethod(next: Method): Promise<void> {
   if (next !== method.value) {
     await actions.perform({ kind: "method", phase: "load" }, () => chooseMethod(next));
@@ -106,6 +117,7 @@ export async function setMethod(next: Method): Promise<void> {
 
 /** The same as part of another action; the core is told when it runs. */
 export function chooseMethod(next: Method): void {
+  keepMethod();
   batch(() => {
     replaceParams({ ...params.value, method: next as unknown as ParamTree[string] });
     // Until the core is compiled there are none.
@@ -113,6 +125,7 @@ export function chooseMethod(next: Method): void {
       replaceStages(stagesOf(next));
     }
     clearResults();
+    showKeptMethod();
   });
 }
 
@@ -126,7 +139,16 @@ export function resetParams(): void {
 
 /** Saves one output file through the browser. */
 export async function download(name: string): Promise<void> {
+  const bytes = await outputFile(name);
+  if (bytes !== null) {
+    saveFile(name, new Blob([bytes], { type: mediaType(name) }));
+  }
+}
+
+/** An output file; null where there is none, or something else took its turn. */
+export async function outputFile(name: string): Promise<Uint8Array<ArrayBuffer> | null> {
   const words = `Writing ${name}`;
+  let bytes: Uint8Array<ArrayBuffer> | null = null;
   await actions.perform({ kind: "save", name, phase: "save", words }, async (turn) => {
     // What it waited for may have taken the results away.
     if (exportNames.value.includes(name)) {
@@ -136,10 +158,10 @@ export async function download(name: string): Promise<void> {
         await runEverything(turn);
         turn.enter("save", words);
       }
-      const bytes = await engine.call("exportFile", name);
-      saveFile(name, new Blob([bytes], { type: mediaType(name) }));
+      bytes = await engine.call("exportFile", name);
     }
   });
+  return bytes;
 }
 
 async function runStage(name: StageName, position: number, taken: ParamTree): Promise<void> {

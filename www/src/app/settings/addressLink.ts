@@ -1,6 +1,6 @@
 /**
  * The page's state in the address, behind "#", so that a link shows what the teacher sees: scene (the demo only: own
- * files stay where they are), method, tab, view, selection, theta, point, camera and changed parameters. Back and
+ * files stay where they are), face, method, tab, view, selection, theta, point, camera and changed parameters. Back and
  * forward go from one tab, view, selection or step of the tour to another.
  */
 import { batch, effect } from "@preact/signals";
@@ -13,11 +13,24 @@ import { defaults, method, params } from "../state/parameters";
 import { isDemo } from "../state/project";
 import { resumeDetail, selectionDetail } from "../state/selectionDetail";
 import { showTourStep, tourStep } from "../state/tour";
-import { camera, select, selection, shownView, showTab, showView, standAt, tab } from "../state/viewState";
+import {
+  camera,
+  type Face,
+  face,
+  select,
+  selection,
+  showFace,
+  shownView,
+  showTab,
+  showView,
+  standAt,
+  tab,
+} from "../state/viewState";
 import { changedParams } from "./parameterForm";
 
 export interface Link {
   scene: "demo" | null;
+  face: Face | null;
   tab: Tab | null;
   view: number | null;
   selection: Selection | null;
@@ -42,11 +55,13 @@ export function parseLink(hash: string): Link {
   const fields = new URLSearchParams(hash.replace(/^#/, ""));
   const tabs: readonly string[] = tabsOf("combined");
   const asked = fields.get("tab") ?? "";
+  const isTab = tabs.includes(asked);
   const named = methodNamed(fields.get("method"));
   const chosen = named === null ? {} : { method: named };
   return {
     scene: fields.get("scene") === "demo" ? "demo" : null,
-    tab: tabs.includes(asked) ? (asked as Tab) : null,
+    face: faceOf(fields.get("face"), isTab ? asked : ""),
+    tab: isTab ? (asked as Tab) : null,
     view: wholeNumber(fields.get("view")),
     selection: parseSelection(fields.get("select")),
     params: { ...parseParams(fields.get("params")), ...chosen },
@@ -55,6 +70,14 @@ export function parseLink(hash: string): Link {
     point: numbers(fields.get("point"), 2) as Link["point"],
     camera: numbers(fields.get("camera"), 6) as Link["camera"],
   };
+}
+
+/** The face that is named, or the only one that has the tab. */
+function faceOf(named: string | null, asked: string): Face | null {
+  if (named === "result" || named === "method") {
+    return named;
+  }
+  return ["", "images", "model"].includes(asked) ? null : "method";
 }
 
 export function formatLink(link: Link): string {
@@ -66,6 +89,7 @@ export function formatLink(link: Link): string {
     }
   };
   set("scene", link.scene);
+  set("face", link.face);
   set("method", chosen === undefined || chosen === "lines" ? null : String(chosen));
   set("tab", link.tab);
   set("view", link.view);
@@ -87,6 +111,7 @@ export function followState(): void {
     const isTabOfMethod = tabsOf(method.value).includes(link.tab ?? "images");
     batch(() => {
       resumeDetail(link);
+      showFace(link.face ?? face.value);
       if (isTabOfMethod) {
         showTab(link.tab ?? "images");
       }
@@ -115,6 +140,7 @@ function presentLink(): Link {
   const { isTurned, theta, isMoved, candidate, at } = selectionDetail.value;
   return {
     scene: isDemo.value ? "demo" : null,
+    face: face.value,
     tab: tab.value,
     view: shownView.value < 0 ? null : shownView.value,
     selection: selection.value,

@@ -95,3 +95,11 @@ export function parseHeight(text: string): Parsed<number> {
   }
   return Number.isFinite(Number(trimmed)) ? { value: Number(trimmed) } : { error: "a number in metres" };
 }
+
+/** The code of a reference system; nothing has the files say it. */
+export function parseEpsg(text: string): Parsed<number> {
+  const code = /^(?:EPSG:)?(\d{4,6})$/i.exec(text.trim())?.[1];
+  return text.trim() === "" || code !== undefined
+    ? { value: code === undefined ? null : Number(code) }
+    : { error: "a code such as 25832" };
+}

@@ -1,50 +1,84 @@
-/** The name, the method, the tour, and how the page looks. */
+/** One row: the project, the two faces of the page, what is going on, and what can be done with the result. */
 
-import { METHODS } from "../../shared/stages";
-import { METHOD_WORDS } from "../../stages/catalogue";
 import { Choice } from "../parts/Choice";
 import { LookButtons } from "../parts/LookButtons";
-import { setMethod } from "../session/stageRuns";
+import { Menu } from "../parts/Menu";
 import { activity } from "../state/activity";
-import { method } from "../state/parameters";
+import { projectName } from "../state/project";
+import { type Face, face, showFace } from "../state/viewState";
 import { startTour } from "../tour/steps";
+import { ResultActions } from "../view/result/ResultActions";
+import { isPhone, layout } from "../view/screen/layout";
 import { showsWorkbench } from "../view/screen/opening";
+import { openPanel, shownPanel } from "../view/screen/panels";
 
 export function Header() {
+  const isOpen = showsWorkbench.value;
   return (
     <header class="header">
       <img src="./icon.svg" alt="" width="22" height="22" />
       <h1>ridgeline</h1>
-      <p class="muted">
-        <span class="what">Aerial photographs in, textured roof models out. </span>Nothing leaves this
-        computer.
-      </p>
+      {isOpen && (
+        <>
+          <ProjectButton />
+          <FaceSwitch />
+        </>
+      )}
+      <span class="grow" />
       {activity.value !== "" && (
         <span class="activity">
           <span class="spinner" aria-hidden="true" />
           {activity}
         </span>
       )}
-      {showsWorkbench.value && <MethodChoice />}
-      <button type="button" onClick={startTour}>
-        Tour
-      </button>
-      <a class="button" href="./lessons.html">
-        Lessons
-      </a>
-      <LookButtons />
+      {isOpen && face.value === "result" && <ResultActions />}
+      {isOpen && layout.value !== "wide" ? (
+        <Menu title="⋯" label="More" class="more">
+          <More />
+        </Menu>
+      ) : (
+        <More />
+      )}
     </header>
   );
 }
 
-function MethodChoice() {
+function More() {
   return (
-    <Choice
-      legend="Method"
-      choices={METHODS.map((name) => [name, METHOD_WORDS[name].title, METHOD_WORDS[name].what])}
-      chosen={method.value}
-      choose={(name) => void setMethod(name)}
-      class="methods"
-    />
+    <>
+      <button type="button" class="quiet" onClick={startTour}>
+        Tour
+      </button>
+      <a class="button quiet" href="./lessons.html">
+        Lessons
+      </a>
+      <LookButtons />
+    </>
   );
+}
+
+/** The project's name opens its files. */
+function ProjectButton() {
+  const isShown = shownPanel.value === "project";
+  const title = isPhone.value ? "Project" : projectName.value || "Project";
+  return (
+    <button
+      type="button"
+      class="quiet project-button"
+      aria-label={`Project: ${projectName.value}`}
+      aria-expanded={isShown}
+      onClick={() => openPanel(isShown ? "main" : "project")}
+    >
+      {title}
+    </button>
+  );
+}
+
+const FACES: readonly (readonly [Face, string, string])[] = [
+  ["result", "Result", "The model, its buildings, report and files"],
+  ["method", "Method", "How it comes about, stage by stage"],
+];
+
+function FaceSwitch() {
+  return <Choice legend="Face" choices={FACES} chosen={face.value} choose={showFace} class="faces" />;
 }

@@ -1,13 +1,13 @@
 /** What a printed page has that the screen says elsewhere: which project, by which method, and what was found. */
-import { counted } from "../parts/counted";
-import "./print.css";
+
 import { stageWords } from "../../stages/catalogue";
-import { slopedArea } from "../parts/facetArea";
+import { counted } from "../parts/counted";
 import { method } from "../state/parameters";
 import { projectName } from "../state/project";
 import { mainResults } from "../state/results";
 import { scene } from "../state/scene";
 import { stages } from "../state/stages";
+import { buildings } from "../view/result/buildings";
 
 export function PrintHead() {
   const views = scene.value?.views ?? [];
@@ -45,9 +45,8 @@ export function PrintHead() {
 
 /** Sloped area and number of roof faces, building by building. */
 function RoofAreas() {
-  const facets = mainResults.value.facets ?? [];
-  const buildings = [...new Set(facets.map(({ building }) => building))].sort((a, b) => a - b);
-  if (buildings.length === 0) {
+  const all = buildings(mainResults.value.facets ?? []);
+  if (all.length === 0) {
     return null;
   }
   return (
@@ -61,16 +60,13 @@ function RoofAreas() {
         </tr>
       </thead>
       <tbody>
-        {buildings.map((number) => {
-          const own = facets.filter(({ building }) => building === number);
-          return (
-            <tr key={number}>
-              <td>{number}</td>
-              <td>{own.length}</td>
-              <td>{own.reduce((sum, facet) => sum + slopedArea(facet), 0).toFixed(1)} m²</td>
-            </tr>
-          );
-        })}
+        {all.map(({ number, faces, area }) => (
+          <tr key={number}>
+            <td>{number}</td>
+            <td>{faces.length}</td>
+            <td>{area.toFixed(1)} m²</td>
+          </tr>
+        ))}
       </tbody>
     </table>
   );

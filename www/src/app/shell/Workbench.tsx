@@ -1,20 +1,20 @@
-/** Project on the left, the stage views in the middle, what they mean and parameters on the right. */
+/** The view, and one panel: beside the result its buildings, beside the method its rail and what the figure means. */
 
 import { FIGURES } from "../../stages/figures";
 import { Inspector } from "../inspector/Inspector";
-import { Downloads } from "../project/Downloads";
 import { KnownFiles } from "../project/known/KnownFiles";
 import { KnownFindings } from "../project/known/KnownFindings";
 import { Parameters } from "../project/Parameters";
 import { Project } from "../project/Project";
 import { Comparison } from "../results/comparison/Comparison";
-import { Corrections } from "../results/corrections/Corrections";
 import { images } from "../state/scene";
 import { tourStep } from "../state/tour";
-import { tab } from "../state/viewState";
+import { face, tab } from "../state/viewState";
 import { TourPanel } from "../tour/TourPanel";
 import { AboutFigure } from "../view/figures/AboutFigure";
+import { ResultPanel } from "../view/result/ResultPanel";
 import { showsEntrance } from "../view/screen/opening";
+import { hasModel, isRoomy, openPanel, shownPanel } from "../view/screen/panels";
 import { PageTakeAlong } from "../view/stages/PageTakeAlong";
 import { StageRail } from "../view/stages/StageRail";
 import { StageView } from "../view/stages/StageView";
@@ -22,31 +22,62 @@ import { Notices } from "./Notices";
 
 export function Workbench() {
   const isBehind = showsEntrance.value;
+  const panel = shownPanel.value;
+  const of = face.value;
+  const isOver = !isRoomy.value && (panel === "project" || (panel === "main" && of === "result"));
   return (
-    <div class="columns">
-      <aside class="column project" aria-label="Project">
-        <Project />
-        {!isBehind && <KnownFiles />}
-        <Downloads />
-      </aside>
+    <div class={`columns ${of} ${panel === null ? "alone" : ""} ${hasModel.value ? "with-model" : ""}`}>
+      <StageRail hidden={of !== "method"} />
       <main class="centre">
         {!isBehind && <Notices />}
         <StageView />
-        <StageRail />
-      </main>
-      <aside class="column details" aria-label="Details">
-        {tourStep.value !== null ? (
-          <TourPanel />
-        ) : (
-          images.value.length > 0 && <AboutFigure of={FIGURES[tab.value]} />
+        {of === "result" && panel === null && hasModel.value && (
+          <button type="button" class="open-panel" onClick={() => openPanel("main")}>
+            Buildings
+          </button>
         )}
-        {tourStep.value === null && images.value.length > 0 && <PageTakeAlong />}
-        <Comparison />
-        <KnownFindings />
-        <Inspector />
-        <Corrections />
-        <Parameters />
+      </main>
+      <aside class="column project" aria-label="Project" hidden={panel !== "project"}>
+        {isOver && <Close />}
+        <Project />
+        {!isBehind && <KnownFiles />}
+      </aside>
+      <aside class="column details" aria-label="Details" hidden={panel !== "main"}>
+        {isOver && <Close />}
+        {of === "result" ? <ResultPanel /> : <MethodPanel />}
       </aside>
     </div>
+  );
+}
+
+function Close() {
+  return (
+    <button
+      type="button"
+      class="quiet close-panel"
+      aria-label="Close the panel"
+      onClick={() => openPanel(null)}
+    >
+      ✕
+    </button>
+  );
+}
+
+function MethodPanel() {
+  const hasImages = images.value.length > 0;
+  return (
+    <>
+      {tourStep.value !== null && <TourPanel />}
+      {tourStep.value === null && hasImages && (
+        <>
+          <AboutFigure of={FIGURES[tab.value]} />
+          <PageTakeAlong />
+        </>
+      )}
+      <Comparison />
+      <KnownFindings />
+      <Inspector />
+      <Parameters />
+    </>
   );
 }

@@ -6,13 +6,17 @@ import { render } from "preact";
 import { storeProject, storeResults } from "../project/storedProject";
 import { askAboutSelection } from "../selection/selectionQueries";
 import { start } from "../session/session";
-import { followState } from "../settings/addressLink";
+import { followState, opened } from "../settings/addressLink";
 import { restoreTextScale } from "../state/textScale";
+import { restoreFace } from "../state/viewState";
 import { setOpening } from "../view/screen/opening";
 import { App } from "./App";
 import { isAwaited, restoreOpeningState } from "./openingState";
+// After all others: on paper it has the last word.
+import "./print.css";
 
 restoreTextScale();
+restoreFace(opened.face);
 const root = document.getElementById("app");
 if (root !== null) {
   render(<App />, root);

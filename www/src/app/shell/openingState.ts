@@ -12,15 +12,15 @@ import {
   readStoredResults,
   type StoredProject,
 } from "../project/storedProject";
-import { showStoredResults } from "../project/storedResults";
 import type { Turn } from "../session/actionQueue";
 import { actions } from "../session/session";
 import { runStages } from "../session/stageRuns";
+import { showStoredResults } from "../session/storedResults";
 import { opened } from "../settings/addressLink";
 import { dismissOffers, notify } from "../state/notices";
 import { method } from "../state/parameters";
 import { runOptions } from "../state/project";
-import { results } from "../state/results";
+import { mainResults, results } from "../state/results";
 import { scene } from "../state/scene";
 import { resumeDetail } from "../state/selectionDetail";
 import { stages } from "../state/stages";
@@ -65,6 +65,8 @@ async function restoreIt(turn: Turn): Promise<void> {
   batch(() => {
     if (opened.tab !== null && tabs.includes(opened.tab)) {
       showTab(opened.tab);
+    } else if (mainResults.value.glb !== null) {
+      showTab("model");
     }
     showView(opened.view ?? shownView.value);
     resumeDetail(opened);

@@ -22,7 +22,7 @@ export interface RunOptions {
   isAtOnce: boolean;
   /** So many by so many pixels of a photograph become one; null: as few as the memory takes. */
   reduction: number | null;
-  /** As a project file says. */
+  /** The code of the reference system; null: as the files say. */
   epsg: number | null;
 }
 

@@ -1,5 +1,6 @@
 /** How large the page writes: the usual size, until the person chooses. */
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
+import { keep, kept } from "./keptChoice";
 
 /** Sizes of text and controls: the second is for projectors. */
 const SCALES = [1, 1.15, 1.3, 1.5] as const;
@@ -22,18 +23,10 @@ export function restoreTextScale(): void {
 export function biggerText(): void {
   const next = SCALES[(SCALES.indexOf(textScale.value as (typeof SCALES)[number]) + 1) % SCALES.length] ?? 1;
   chosen.value = next;
-  try {
-    localStorage.setItem(SCALE_KEY, String(next));
-  } catch {
-    // Storage may be forbidden: the choice then lasts until the page is closed.
-  }
+  keep(SCALE_KEY, String(next));
 }
 
 function storedScale(): number {
-  try {
-    const stored = Number(localStorage.getItem(SCALE_KEY));
-    return SCALES.find((scale) => scale === stored) ?? 1;
-  } catch {
-    return 1;
-  }
+  const stored = Number(kept(SCALE_KEY));
+  return SCALES.find((scale) => scale === stored) ?? 1;
 }

@@ -1,5 +1,6 @@
 /** Dark or light: what the system prefers, until the person chooses. */
 import { computed, effect, signal } from "@preact/signals";
+import { keep, kept } from "./keptChoice";
 
 export type Theme = "light" | "dark";
 
@@ -21,18 +22,10 @@ effect(() => {
 
 export function toggleTheme(): void {
   chosenTheme.value = theme.value === "dark" ? "light" : "dark";
-  try {
-    localStorage.setItem(STORAGE_KEY, chosenTheme.value);
-  } catch {
-    // Storage may be forbidden: the choice then lasts until the page is closed.
-  }
+  keep(STORAGE_KEY, chosenTheme.value);
 }
 
 function storedTheme(): Theme | null {
-  try {
-    const stored = localStorage.getItem(STORAGE_KEY);
-    return stored === "dark" || stored === "light" ? stored : null;
-  } catch {
-    return null;
-  }
+  const stored = kept(STORAGE_KEY);
+  return stored === "dark" || stored === "light" ? stored : null;
 }

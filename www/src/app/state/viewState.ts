@@ -1,10 +1,18 @@
-/** What is looked at: the tab, the view, the selection, and how the figures show them. */
-import { type ReadonlySignal, signal } from "@preact/signals";
+/** What is looked at: the face, the tab, the view, the selection, and how the figures show them. */
+import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import type { Vec3 } from "../../shared/records";
 import type { Selection, Standpoint } from "../../shared/selection";
 import type { Tab } from "../../stages/list";
+import { keep, kept } from "./keptChoice";
+
+/** The model for those who want it, or how it comes about, stage by stage. */
+export type Face = "result" | "method";
 
 const present = {
+  face: signal<Face>("result"),
   tab: signal<Tab>("images"),
+  /** Of the result only the model and the photographs are shown. */
+  resultTab: signal<Tab & ("images" | "model")>("images"),
   view: signal(0),
   selection: signal<Selection | null>(null),
   plane: signal(0),
@@ -12,9 +20,13 @@ const present = {
   followsSelection: signal(true),
   withRejected: signal(false),
   camera: signal<Standpoint | null>(null),
+  aim: signal<readonly Vec3[] | null>(null),
 };
 
-export const tab: ReadonlySignal<Tab> = present.tab;
+export const face: ReadonlySignal<Face> = present.face;
+export const tab: ReadonlySignal<Tab> = computed(() =>
+  present.face.value === "result" ? present.resultTab.value : present.tab.value,
+);
 /** The view shown in the image tabs; -1: all of them side by side. */
 export const shownView: ReadonlySignal<number> = present.view;
 export const selection: ReadonlySignal<Selection | null> = present.selection;
@@ -30,12 +42,35 @@ export const withRejected: ReadonlySignal<boolean> = present.withRejected;
 /** Where the person has put the 3D view's camera; null: where all is seen. */
 export const camera: ReadonlySignal<Standpoint | null> = present.camera;
 
+/** What the 3D view was last asked to look at, local frame. */
+export const aim: ReadonlySignal<readonly Vec3[] | null> = present.aim;
+
+export function aimAt(places: readonly Vec3[]): void {
+  present.aim.value = places;
+}
+
 export function standAt(standpoint: Standpoint | null): void {
   present.camera.value = standpoint;
 }
 
 export function showTab(name: Tab): void {
   present.tab.value = name;
+  if (name === "images" || name === "model") {
+    present.resultTab.value = name;
+  }
+}
+
+const FACE_KEY = "ridgeline.face";
+
+/** Turns to a face; it stays over visits. */
+export function showFace(next: Face): void {
+  present.face.value = next;
+  keep(FACE_KEY, next);
+}
+
+/** Turns to the face of the last visit, unless another one is asked for. */
+export function restoreFace(asked: Face | null): void {
+  present.face.value = asked ?? (kept(FACE_KEY) === "method" ? "method" : "result");
 }
 
 export function showView(view: number): void {

@@ -11,7 +11,7 @@ import { method } from "../state/parameters";
 import { files, isDemo } from "../state/project";
 import { freshStages, stages } from "../state/stages";
 import { showTourStep, tourStep } from "../state/tour";
-import { select, showTab } from "../state/viewState";
+import { select, showFace, showTab } from "../state/viewState";
 
 interface TourStep extends StageStep {
   method: Method;
@@ -46,6 +46,7 @@ export async function goTo(step: number): Promise<void> {
     return;
   }
   showTourStep(step);
+  showFace("method");
   await actions.perform({ kind: "tour", name: "step", phase: "load" }, async (turn) => {
     // Steps that were passed while this one waited need no run of their own.
     await goToIn(turn, tourStep.value ?? step);
@@ -59,6 +60,7 @@ export async function goToIn(turn: Turn, step: number): Promise<void> {
     return;
   }
   showTourStep(step);
+  showFace("method");
   if (files.value.length === 0) {
     await openDemoIn(turn, null);
   }

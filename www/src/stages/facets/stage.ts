@@ -16,7 +16,6 @@ export const facets = {
     refinement: null,
   }),
   known: ["register", "terrain", "cloud"],
-  isCorrected: true,
 } satisfies Stage;
 
 /** Facets that a stage has found anew: nothing is corrected in them. */

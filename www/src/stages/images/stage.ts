@@ -1,4 +1,4 @@
 /** The photographs, before any stage. */
 import type { Stage } from "../stage";
 
-export const images = { isCorrected: true } satisfies Stage;
+export const images = {} satisfies Stage;

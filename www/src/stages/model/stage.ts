@@ -20,5 +20,4 @@ export const model = {
   }),
   sections: { texture: "Texture" },
   mainCount: "textured faces",
-  isCorrected: true,
 } satisfies Stage;

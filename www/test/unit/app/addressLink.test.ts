@@ -3,6 +3,7 @@ import { formatLink, type Link, parseLink } from "../../../src/app/settings/addr
 
 const LINK: Link = {
   scene: "demo",
+  face: "method",
   tab: "halfplanes",
   view: 2,
   selection: { kind: "side", line: 12, side: "left" },
@@ -22,6 +23,12 @@ describe("links", () => {
     expect(parseLink(formatLink({ ...LINK, params: { method } })).params).toEqual({ method });
   });
 
+  it("lead to the method where only that shows the tab", () => {
+    expect(parseLink("tab=lines").face).toBe("method");
+    expect(parseLink("tab=model").face).toBeNull();
+    expect(parseLink("tab=lines&face=result").face).toBe("result");
+  });
+
   it.each([
     "tab=<script>",
     "select=line:-1",
@@ -32,6 +39,7 @@ describe("links", () => {
     "params={",
     "params=[1]",
     "scene=http://elsewhere",
+    "face=other",
     "method=constructor",
     "theta=up",
     "theta=",
@@ -40,6 +48,7 @@ describe("links", () => {
   ])("take nothing from %j", (hash) => {
     expect(parseLink(hash)).toEqual({
       scene: null,
+      face: null,
       tab: null,
       view: null,
       selection: null,

@@ -1,7 +1,7 @@
 /** What the page says of adjacency graphs: corners of an image, corners in space, and the planes that these propose. */
 import { afterEach, describe, expect, it } from "vitest";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
-import { showTab } from "../../../src/app/state/viewState";
+import { showFace, showTab } from "../../../src/app/state/viewState";
 import { cornerAt, graphOverlay } from "../../../src/app/view/images/graphOverlay";
 import { rowsOf, shapesOf, siblingsOf, titleOf } from "../../../src/kinds/kinds";
 import type { Related, Row } from "../../../src/kinds/parts/rows";
@@ -21,6 +21,8 @@ import { cornerParts } from "../../../src/stages/adjacency/tour";
 import { tabsOf } from "../../../src/stages/catalogue";
 import { presentEntries } from "../../../src/stages/PageLegend";
 import { about } from "../kinds/about";
+
+showFace("method");
 
 const edgeInImage = (far: [number, number], direction: [number, number], region: number) => ({
   segment: 0,

@@ -2,7 +2,7 @@
 import { afterEach, describe, expect, it } from "vitest";
 import { setAt, shownSets } from "../../../src/app/selection/coplanarPlan";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
-import { showTab } from "../../../src/app/state/viewState";
+import { showFace, showTab } from "../../../src/app/state/viewState";
 import { linesOf, rowsOf, shapesOf, titleOf } from "../../../src/kinds/kinds";
 import type { Related, Row } from "../../../src/kinds/parts/rows";
 import {
@@ -17,6 +17,8 @@ import { tabsOf } from "../../../src/stages/catalogue";
 import { coplanarSetParts } from "../../../src/stages/coplanar/tour";
 import { presentEntries } from "../../../src/stages/PageLegend";
 import { about } from "../kinds/about";
+
+showFace("method");
 
 const square = (x: number, side: number): CoplanarSet["polygon"] => [
   [x, 0, 5],

@@ -3,7 +3,7 @@ import { afterEach, describe, expect, it } from "vitest";
 import { frameOf } from "../../../src/app/parts/charts";
 import { areasOf, equalScales, planeAt, squaresAt } from "../../../src/app/selection/densePlan";
 import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
-import { showTab } from "../../../src/app/state/viewState";
+import { showFace, showTab } from "../../../src/app/state/viewState";
 import { rowsOf, shapesOf, titleOf } from "../../../src/kinds/kinds";
 import type { Related, Row } from "../../../src/kinds/parts/rows";
 import {
@@ -20,6 +20,8 @@ import { slopeSigma } from "../../../src/shared/surfaceClass";
 import { methodOfFacet } from "../../../src/stages/model/ModelModes";
 import { presentEntries } from "../../../src/stages/PageLegend";
 import { about } from "../kinds/about";
+
+showFace("method");
 
 const RING: DensePlane["ring"] = [
   [0, 0, 5],

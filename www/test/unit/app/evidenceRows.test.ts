@@ -1,13 +1,15 @@
 import { afterEach, describe, expect, it } from "vitest";
 import { facetRejectionWords } from "../../../src/app/parts/reasonText";
 import { NO_RESULTS, type Results, restoreResults, results } from "../../../src/app/state/results";
-import { showTab } from "../../../src/app/state/viewState";
+import { showFace, showTab } from "../../../src/app/state/viewState";
 import { rowsOf } from "../../../src/kinds/kinds";
 import { evidenceRow } from "../../../src/kinds/parts/evidenceRows";
 import type { Bars, Row } from "../../../src/kinds/parts/rows";
 import type { Evidence, Facet, FacetTrace, LineRecord } from "../../../src/shared/records";
 import { presentEntries } from "../../../src/stages/PageLegend";
 import { about } from "../kinds/about";
+
+showFace("method");
 
 const evidence = (prior: number, terms: Record<string, [value: number, nats: number]>): Evidence => ({
   prior,

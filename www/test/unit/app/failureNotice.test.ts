@@ -19,6 +19,13 @@ describe("splitAdvice", () => {
     });
   });
 
+  it("names no option of the command line", () => {
+    expect(splitAdvice("a.asc: in feet (--crs EPSG:N states the system); leave it out (--without)")).toEqual({
+      text: "a.asc: in feet",
+      advice: "Leave it out",
+    });
+  });
+
   it("leaves a message without advice whole", () => {
     expect(splitAdvice("a.jpg: unreadable")).toEqual({ text: "a.jpg: unreadable" });
   });

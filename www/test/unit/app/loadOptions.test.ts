@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { loadOptions, parseHeight, parseRegion } from "../../../src/app/settings/loadOptions";
+import { loadOptions, parseEpsg, parseHeight, parseRegion } from "../../../src/app/settings/loadOptions";
 import { NO_OPTIONS } from "../../../src/app/state/project";
 import type { Inspection } from "../../../src/shared/records";
 
@@ -61,5 +61,9 @@ describe("run options", () => {
     expect(parseHeight("0")).toEqual({ value: 0 });
     expect(parseHeight("")).toEqual({ value: null });
     expect(parseHeight("12 m")).toHaveProperty("error");
+    expect(parseEpsg("25832")).toEqual({ value: 25832 });
+    expect(parseEpsg(" epsg:2056 ")).toEqual({ value: 2056 });
+    expect(parseEpsg("")).toEqual({ value: null });
+    expect(parseEpsg("UTM 32")).toHaveProperty("error");
   });
 });

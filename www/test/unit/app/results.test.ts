@@ -9,8 +9,10 @@ import {
   setResults,
   showPreliminary,
 } from "../../../src/app/state/results";
-import { showTab } from "../../../src/app/state/viewState";
+import { showFace, showTab } from "../../../src/app/state/viewState";
 import type { Facet } from "../../../src/shared/records";
+
+showFace("method");
 
 const choose = (method: string) => {
   replaceParams({ method } as unknown as typeof params.value);

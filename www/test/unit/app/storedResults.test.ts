@@ -5,7 +5,7 @@ import { FACETS, Session } from "../../fake/ridgeline";
 
 vi.mock("../../../src/pkg/ridgeline_bg.wasm?url", () => ({ default: "none" }));
 
-const stored = await import("../../../src/app/project/storedResults");
+const stored = await import("../../../src/app/session/storedResults");
 const { allResults, addResults, exportNames, NO_RESULTS, setExportNames, setResults } = await import(
   "../../../src/app/state/results"
 );

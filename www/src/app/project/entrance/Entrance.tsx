@@ -7,7 +7,7 @@ import { THEME_COLOURS } from "../../../shared/palette";
 import { createTurntable, type PhotographicGround, type Turntable } from "../../../viewer/turntable";
 import { theme } from "../../state/theme";
 import { startTour } from "../../tour/steps";
-import { DropZone } from "../Project";
+import { useFilePicker } from "../filePicker";
 import { openDemo } from "../projectActions";
 
 /** What the build wrote beside the model. */
@@ -29,25 +29,64 @@ export function Entrance() {
       <section class="invitation" aria-label="Begin">
         <h2>From aerial photographs to textured roof models</h2>
         <p>
-          Three or more overlapping photographs, whose positions and directions are known, become buildings in
-          3D: computed here, in the browser.
+          Three or more overlapping photographs become buildings in 3D: computed here, in the browser. Nothing
+          is sent anywhere.
         </p>
-        <p class="row">
-          <button type="button" class="primary" onClick={startTour}>
-            How?
-          </button>
-          <span class="muted">A tour in twelve steps, on the example.</span>
-        </p>
+        <Doors />
         <p>
           <a href="./lessons.html">Ten lessons</a>{" "}
           <span class="muted">
             of multi-view geometry, with <a href="./exercises.html">exercises</a> and a{" "}
-            <a href="./exercises.html#glossary">glossary</a>.
+            <a href="./exercises.html#glossary">glossary</a>; or a{" "}
           </span>
+          <button type="button" class="link" onClick={startTour}>
+            tour in twelve steps
+          </button>
+          <span class="muted"> through the method.</span>
         </p>
-        <DropZone />
       </section>
     </div>
+  );
+}
+
+/** What people come with. */
+function Doors() {
+  const { isOver, openFiles, openFolder, inputs } = useFilePicker();
+  return (
+    <div class={`doors ${isOver ? "over" : ""}`}>
+      <Door
+        title="I have only photographs"
+        text="JPEG, PNG or TIFF, from a drone or an aeroplane. Where each was taken is computed first."
+        onClick={openFiles}
+      />
+      <Door
+        title="Photographs with their orientation"
+        text="From Metashape, Pix4D, COLMAP, OpenSfM, Bundler and others, matrices, or lists of X Y Z omega phi kappa."
+        onClick={openFiles}
+      />
+      <Door
+        title="Show me on the example"
+        text="Five houses, from six photographs to the model, in some seconds."
+        onClick={() => void openDemo()}
+      />
+      <p class="muted">
+        Files and folders can be dropped anywhere on this page, also as a .zip; or{" "}
+        <button type="button" class="link" onClick={openFolder}>
+          open a folder
+        </button>
+        .
+      </p>
+      {inputs}
+    </div>
+  );
+}
+
+function Door({ title, text, onClick }: { title: string; text: string; onClick: () => void }) {
+  return (
+    <button type="button" class="way" onClick={onClick}>
+      <b>{title}</b>
+      <span class="muted">{text}</span>
+    </button>
   );
 }
 
@@ -119,12 +158,7 @@ function Photographs() {
   const names = shown.value?.photographs ?? [];
   return (
     <div class="sources">
-      <p>
-        Five houses, computed from {counted(names.length === 0 ? 6 : names.length, "photographs")}.{" "}
-        <button type="button" onClick={() => void openDemo()}>
-          Demo scene
-        </button>
-      </p>
+      <p>Five houses, computed from {counted(names.length === 0 ? 6 : names.length, "photographs")}.</p>
       <ul>
         {names.map((path) => (
           <li key={path}>

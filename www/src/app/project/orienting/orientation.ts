@@ -1,5 +1,7 @@
 /** The orientation of photographs alone: how far it is, what was found, and what a person can do about it. */
+
 import { batch, effect, type ReadonlySignal, signal } from "@preact/signals";
+import { zipSync } from "fflate";
 import { EngineError } from "../../../core/engine";
 import { OrientationRun } from "../../../core/orientation";
 import type { InputFile } from "../../../shared/calls";
@@ -13,7 +15,6 @@ import type {
 } from "../../../shared/orientation";
 import { counted } from "../../parts/counted";
 import { saveFile } from "../../parts/saveFile";
-import { zipped } from "../../parts/zipped";
 import { actions } from "../../session/session";
 import { runEverything } from "../../session/stageRuns";
 import { announce } from "../../state/notices";
@@ -257,4 +258,14 @@ export async function reconstructWithIt(): Promise<void> {
     await addFilesIn(turn, added);
     await runEverything(turn);
   });
+}
+
+/** Where the format's time begins, so that the same files give the same bytes. */
+const NO_TIME = new Date(1980, 0, 1);
+
+/** Files in one archive. */
+async function zipped(files: readonly InputFile[]): Promise<Blob> {
+  const read = async ({ path, blob }: InputFile) => [path, new Uint8Array(await blob.arrayBuffer())] as const;
+  const entries = Object.fromEntries(await Promise.all(files.map(read)));
+  return new Blob([zipSync(entries, { mtime: NO_TIME })], { type: "application/zip" });
 }

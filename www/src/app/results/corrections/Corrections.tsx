@@ -1,10 +1,9 @@
 /** Corrections of the model by hand: what can be done with the selected facet, and what has been done. */
 import "./corrections.css";
 import { signal, useSignalEffect } from "@preact/signals";
-import { useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import { facetOf } from "../../../kinds/kinds";
 import type { Correction, Facet, NotApplied, Vec3 } from "../../../shared/records";
-import { STAGE_FACTS } from "../../../stages/list";
 import { counted } from "../../parts/counted";
 import { saveFile } from "../../parts/saveFile";
 import { TextField } from "../../parts/TextField";
@@ -12,10 +11,10 @@ import { isBusy } from "../../state/activity";
 import { notify } from "../../state/notices";
 import { mainResults } from "../../state/results";
 import { scene } from "../../state/scene";
-import { select, selection, tab } from "../../state/viewState";
+import { aimAt, select, selection } from "../../state/viewState";
 import { correctionWords, NOT_APPLIED_WORDS } from "./correctionWords";
 import { doubtfulFacets, nextDoubtful } from "./doubtful";
-import { drawn, forgetDrawn, isCorrecting, showCorrecting } from "./drawn";
+import { drawn, forgetDrawn, showCorrecting } from "./drawn";
 import { drawEdge, edgeStart, isDrawingEdge } from "./edgeDrawing";
 import {
   type Ends,
@@ -39,42 +38,39 @@ const armed = signal<Armed | null>(null);
 export function Corrections() {
   const { facets } = mainResults.value;
   useSignalEffect(takeSecond);
-  useSignalEffect(() => {
-    if (!isCorrecting.value) {
-      return;
-    }
+  useEffect(() => {
     window.addEventListener("keydown", onKeyDown);
     return () => window.removeEventListener("keydown", onKeyDown);
-  });
-  if (facets === null || STAGE_FACTS[tab.value].isCorrected !== true) {
+  }, []);
+  if (facets === null) {
     return null;
   }
   const doubtful = doubtfulFacets(facets).length;
   return (
     <section class="panel corrections" data-testid="corrections">
-      <details open={isCorrecting.value} onToggle={(event) => showCorrecting(event.currentTarget.open)}>
-        <summary>
-          <h2>Corrections</h2>
-          {corrections.value.length > 0 && <span class="changed-mark">{corrections.value.length}</span>}
-        </summary>
-        <div class="row wrap">
-          <button type="button" disabled={doubtful === 0} onClick={goOn} title="Key N">
-            Next doubtful
-          </button>
-          <button type="button" disabled={!canUndo.value || isBusy.value} onClick={() => void undo()}>
-            Undo
-          </button>
-          <button type="button" disabled={!canRedo.value || isBusy.value} onClick={() => void redo()}>
-            Redo
-          </button>
-          <span class="muted">
-            {doubtful === 0 ? "No facet is doubtful" : `Doubtful: ${counted(doubtful, "facets")}`}
-          </span>
-        </div>
-        <SelectedFacet facets={facets} />
-        <EdgeTool />
-        <Done />
-      </details>
+      <div class="row spread">
+        <h2>Corrections</h2>
+        <button type="button" class="quiet" onClick={() => showCorrecting(false)}>
+          Done
+        </button>
+      </div>
+      <div class="row wrap">
+        <button type="button" disabled={doubtful === 0} onClick={goOn} title="Key N">
+          Next doubtful
+        </button>
+        <button type="button" disabled={!canUndo.value || isBusy.value} onClick={() => void undo()}>
+          Undo
+        </button>
+        <button type="button" disabled={!canRedo.value || isBusy.value} onClick={() => void redo()}>
+          Redo
+        </button>
+        <span class="muted">
+          {doubtful === 0 ? "No facet is doubtful" : `Doubtful: ${counted(doubtful, "facets")}`}
+        </span>
+      </div>
+      <SelectedFacet facets={facets} />
+      <EdgeTool />
+      <Done />
     </section>
   );
 }
@@ -109,9 +105,15 @@ export function selectedFacet(): number | null {
   return facetOf(selection.value);
 }
 
+/** The camera turns to it, with the building about it. */
 function goOn(): void {
-  const index = nextDoubtful(mainResults.value.facets ?? [], selectedFacet());
+  const facets = mainResults.value.facets ?? [];
+  const index = nextDoubtful(facets, selectedFacet());
   select(index === null ? null : { kind: "facet", index });
+  const building = facets[index ?? -1]?.building;
+  if (building !== undefined) {
+    aimAt(facets.flatMap((facet) => (facet.building === building ? facet.outer : [])));
+  }
 }
 
 function onKeyDown(event: KeyboardEvent): void {

@@ -1,14 +1,17 @@
 /** Points that were clicked in the 3D view, for facets and edges that are missing. */
-import { type ReadonlySignal, signal } from "@preact/signals";
+import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import type { Vec3 } from "../../../shared/records";
+import { face } from "../../state/viewState";
 
 const points = signal<readonly Vec3[]>([]);
 /** Local frame, in the order of the clicks. */
 export const drawn: ReadonlySignal<readonly Vec3[]> = points;
 
-/** Whether the model is being corrected: corners can be dragged, points drawn. */
 const correcting = signal(false);
-export const isCorrecting: ReadonlySignal<boolean> = correcting;
+/** Whether the model is being corrected: corners can be dragged, points drawn. */
+export const isCorrecting: ReadonlySignal<boolean> = computed(
+  () => correcting.value && face.value === "result",
+);
 
 export function showCorrecting(shows: boolean): void {
   correcting.value = shows;

@@ -21,7 +21,7 @@ export function AboutFigure({ of: { title, source, text, equation, hint } }: { o
     <details class="panel about" open data-testid="about">
       <summary>
         <h2>{title}</h2>
-        <span class="muted">{source}</span>
+        <span class="muted">{spelledOut(source)}</span>
       </summary>
       <p>
         <Linked text={text} />
@@ -30,4 +30,9 @@ export function AboutFigure({ of: { title, source, text, equation, hint } }: { o
       <p class="muted">{hint}</p>
     </details>
   );
+}
+
+/** Where a paper is first met, it has its authors. */
+function spelledOut(source: string): string {
+  return source.replace("B99", "Baillard et al. 1999,").replace("W96", "Wiman, Axelsson 1996,");
 }

@@ -1,12 +1,15 @@
 /** The tools of the 3D view: fit, look down, look through a view's camera, measure, cut, keep a picture. */
 import { signal } from "@preact/signals";
+import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import type { Measured } from "../../../viewer/tools/measure";
 import type { Section } from "../../../viewer/tools/section";
 import type { Viewer } from "../../../viewer/viewer";
+import { Menu } from "../../parts/Menu";
 import { saveFile } from "../../parts/saveFile";
 import { isCorrecting, takePoint } from "../../results/corrections/drawn";
 import { tab } from "../../state/viewState";
+import { isPhone } from "../screen/layout";
 import { FlyTo, lookThrough, Photograph, throughView } from "./Photograph";
 import { SectionChart } from "./SectionChart";
 
@@ -17,7 +20,14 @@ const tool = signal<Tool | null>(null);
 const measured = signal<Measured | null>(null);
 const section = signal<Section | null>(null);
 
-export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: () => void }) {
+interface Props {
+  viewer: Viewer | null;
+  onFit: () => void;
+  /** What stands before the tools: which layers are seen, and how. */
+  children: ComponentChildren;
+}
+
+export function SpaceTools({ viewer, onFit, children }: Props) {
   const leave = () => lookThrough(viewer, null);
   const choose = (next: Tool) => {
     const isOn = tool.value === next;
@@ -31,51 +41,66 @@ export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: ()
       viewer?.draw3d(takePoint);
     }
   };
+  useEffect(() => {
+    const end = ({ key }: KeyboardEvent) => {
+      if (key === "Escape" && tool.value !== null) {
+        choose(tool.value);
+      }
+    };
+    window.addEventListener("keydown", end);
+    return () => window.removeEventListener("keydown", end);
+  });
   const keepPicture = async () => {
     const blob = await viewer?.screenshot();
     if (blob != null) {
       saveFile(`${tab.value}.png`, blob);
     }
   };
+  const tools = (
+    <>
+      <button
+        type="button"
+        onClick={() => {
+          leave();
+          onFit();
+        }}
+      >
+        Fit
+      </button>
+      <button
+        type="button"
+        onClick={() => {
+          leave();
+          viewer?.lookDown();
+        }}
+      >
+        Top
+      </button>
+      <button type="button" aria-pressed={tool.value === "measure"} onClick={() => choose("measure")}>
+        Measure
+      </button>
+      <button type="button" aria-pressed={tool.value === "section"} onClick={() => choose("section")}>
+        Section
+      </button>
+      {isCorrecting.value && (
+        <button type="button" aria-pressed={tool.value === "draw"} onClick={() => choose("draw")}>
+          Draw
+        </button>
+      )}
+      <button type="button" onClick={() => void keepPicture()}>
+        Picture
+      </button>
+      <FlyTo viewer={viewer} />
+    </>
+  );
   return (
     <>
       {throughView.value !== null && <Photograph view={throughView.value} />}
       <div class="space-tools">
-        <button
-          type="button"
-          onClick={() => {
-            leave();
-            onFit();
-          }}
-        >
-          Fit
-        </button>
-        <button
-          type="button"
-          onClick={() => {
-            leave();
-            viewer?.lookDown();
-          }}
-        >
-          Top
-        </button>
-        <button type="button" aria-pressed={tool.value === "measure"} onClick={() => choose("measure")}>
-          Measure
-        </button>
-        <button type="button" aria-pressed={tool.value === "section"} onClick={() => choose("section")}>
-          Section
-        </button>
-        {isCorrecting.value && (
-          <button type="button" aria-pressed={tool.value === "draw"} onClick={() => choose("draw")}>
-            Draw
-          </button>
-        )}
-        <button type="button" onClick={() => void keepPicture()}>
-          Picture
-        </button>
-        <FlyTo viewer={viewer} />
+        {children}
+        {isPhone.value ? <Menu title="Tools">{tools}</Menu> : tools}
       </div>
-      {tool.value !== null && <Crosshair viewer={viewer} onLeave={() => choose(tool.value ?? "measure")} />}
+      {tool.value !== null && <Crosshair viewer={viewer} />}
       {tool.value === "measure" && <Reading measured={measured.value} />}
       {tool.value === "draw" && (
         <p class="reading" role="status">
@@ -99,7 +124,7 @@ const STEPS: Record<string, readonly [number, number]> = {
 };
 
 /** Points for the tools without a pointer: arrows move the crosshair (Shift: finely), Enter takes the point below it. */
-function Crosshair({ viewer, onLeave }: { viewer: Viewer | null; onLeave: () => void }) {
+function Crosshair({ viewer }: { viewer: Viewer | null }) {
   const button = useRef<HTMLButtonElement>(null);
   const { clientWidth = 0, clientHeight = 0 } = button.current?.parentElement ?? {};
   const place = aim.value ?? { x: clientWidth / 2, y: clientHeight / 2 };
@@ -112,8 +137,6 @@ function Crosshair({ viewer, onLeave }: { viewer: Viewer | null; onLeave: () => 
         x: Math.min(clientWidth - 1, Math.max(0, place.x + size * step[0])),
         y: Math.min(clientHeight - 1, Math.max(0, place.y + size * step[1])),
       };
-    } else if (event.key === "Escape") {
-      onLeave();
     }
   };
   // Its place is known once it is laid out.

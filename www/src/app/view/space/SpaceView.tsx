@@ -10,10 +10,12 @@ import type { Tab } from "../../../stages/list";
 import { PageLegend } from "../../../stages/PageLegend";
 import { pageOf } from "../../../stages/pages";
 import { cornersOf, cornersOfFacets, endsOfLines, withCameras } from "../../../viewer/scene/bounds";
+import { yUp } from "../../../viewer/scene/frame";
 import { GRID_STEP_M } from "../../../viewer/scene/grid";
 import { warmupLayers } from "../../../viewer/shaderWarmup";
 import { Viewer } from "../../../viewer/viewer";
 import { Choice } from "../../parts/Choice";
+import { Menu } from "../../parts/Menu";
 import { presentTitle } from "../../results/comparison/comparedResults";
 import { isBusy } from "../../state/activity";
 import { keptResult } from "../../state/keptResult";
@@ -22,10 +24,11 @@ import { method } from "../../state/parameters";
 import { preliminaryFacets, results } from "../../state/results";
 import { scene } from "../../state/scene";
 import { theme } from "../../state/theme";
-import { camera, select, selection, standAt, tab } from "../../state/viewState";
+import { aim, camera, face, select, selection, standAt, tab } from "../../state/viewState";
 import { useCornerHandles } from "./cornerHandles";
 import { canStandBeside, isBeside, standBeside, wantsBeside } from "./keptBeside";
 import { model, useModels } from "./modelLayers";
+import { ResultViews } from "./ResultViews";
 import {
   chosenLayers,
   followResults,
@@ -55,15 +58,6 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
   const isEmpty = isTabEmpty?.(results.value) === true && !showsPreliminary.value;
   return (
     <div class="space-view" hidden={hidden}>
-      <div class="toolbar">
-        <LayerSwitches />
-        <OfLayers part="Switch" />
-        {Switch !== undefined && <Switch />}
-        {canStandBeside.value && <BesideSwitch />}
-        <span class="grow" />
-        <PageLegend />
-        <OfLayers part="Legend" />
-      </div>
       {isBeside.value && (
         <div class="halves" data-testid="halves">
           <p>
@@ -88,19 +82,30 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
           }}
         />
         <canvas ref={paper} class="paper" />
-        {tab.value === "model" && <Unmodelled />}
         {isEmpty && (
           <div class="empty over">
             <p>Nothing to show yet.</p>
             <p class="muted">This view fills when its stage has run.</p>
           </div>
         )}
-        {!isEmpty && <SpaceTools viewer={viewer.value} onFit={fitView} />}
         {!isEmpty && (
-          <span class="scale muted numbers">
-            {showsPreliminary.value && <span data-testid="preliminary">preliminary · </span>}
-            grid {GRID_STEP_M} m
-          </span>
+          <>
+            <SpaceTools viewer={viewer.value} onFit={fitView}>
+              <ResultViews />
+              <LookMenu />
+              {face.value === "method" && Switch !== undefined && <Switch />}
+              {canStandBeside.value && <BesideSwitch />}
+            </SpaceTools>
+            <div class="space-foot">
+              {tab.value === "model" && <Unmodelled />}
+              <PageLegend />
+              <OfLayers part="Legend" />
+              <span class="scale muted numbers">
+                {showsPreliminary.value && <span data-testid="preliminary">preliminary · </span>}
+                grid {GRID_STEP_M} m
+              </span>
+            </div>
+          </>
         )}
       </div>
     </div>
@@ -134,8 +139,6 @@ function BesideSwitch() {
   );
 }
 
-/** Of the height of a tab that the canvas has, more or less: the rest is its figure's. */
-const CANVAS_SHARE = 0.6;
 /** Between two stages nothing runs for a moment. */
 const PAUSE_MS = 400;
 
@@ -147,7 +150,7 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
     const made = new Viewer(canvas, THEME_COLOURS[theme.peek()], select, LAYER_ROLES);
     made.onStand = standAt;
     const { clientWidth = 0, clientHeight = 0 } = canvas.closest(".stage-view") ?? {};
-    made.prepareSize(clientWidth, Math.round(CANVAS_SHARE * clientHeight));
+    made.prepareSize(clientWidth, clientHeight);
     const ofLayers = Object.values(LAYERS).flatMap(({ warm }) => warm?.() ?? []);
     [...warmupLayers(), ...ofLayers].forEach((layer, i) => {
       made.showLayer(`warm ${i}`, false);
@@ -197,6 +200,12 @@ function useLayers(): void {
       viewer.value?.standAt(camera.value);
     }
   });
+  useSignalEffect(() => {
+    if (aim.value !== null) {
+      standAt(null);
+      viewer.peek()?.lookAt(aim.value.map(yUp));
+    }
+  });
   useSignalEffect(() => viewer.value?.setTheme(THEME_COLOURS[theme.value]));
   useSignalEffect(() => viewer.value?.halve(isBeside.value ? ["kept", "keptModel"] : null));
   useSignalEffect(() => {
@@ -235,8 +244,21 @@ function pointsNow(): Vector3[] {
 
 /** Layers that only tabs of other methods show first stay empty with this one. */
 function isOffered(name: string): boolean {
+  if (face.value === "result") {
+    return ["model", "ground", "cameras", ...chosenLayers.value].includes(name);
+  }
   const isFirst = (one: Tab) => pageOf(one).shows?.includes(name) === true;
   return tabsOf(method.value).some(isFirst) || !tabsOf("combined").some(isFirst);
+}
+
+/** Which layers are seen, and how the model looks. */
+function LookMenu() {
+  return (
+    <Menu title="Layers">
+      <OfLayers part="Switch" />
+      <LayerSwitches />
+    </Menu>
+  );
 }
 
 function LayerSwitches() {

@@ -1,8 +1,6 @@
 /** Dots at the corners and edges of the facet that is being corrected, or at the points that were drawn. */
 import { type ReadonlySignal, useSignalEffect } from "@preact/signals";
 import type { Vec3 } from "../../../shared/records";
-import { STAGE_FACTS } from "../../../stages/list";
-import { pageOf } from "../../../stages/pages";
 import type { Viewer } from "../../../viewer/viewer";
 import { BY_HAND_M, selectedFacet } from "../../results/corrections/Corrections";
 import { drawn, isCorrecting, moveDrawn } from "../../results/corrections/drawn";
@@ -23,11 +21,7 @@ import { tab } from "../../state/viewState";
 export function useCornerHandles(viewer: ReadonlySignal<Viewer | null>): void {
   useSignalEffect(() => {
     const facet = mainResults.value.facets?.[selectedFacet() ?? -1];
-    const isShown =
-      isCorrecting.value &&
-      !isBusy.value &&
-      pageOf(tab.value).shows !== undefined &&
-      STAGE_FACTS[tab.value].isCorrected === true;
+    const isShown = isCorrecting.value && !isBusy.value && tab.value === "model";
     const origin = scene.value?.origin;
     if (isShown && drawn.value.length > 0) {
       viewer.value?.showHandles(drawn.value, moveDrawn);

@@ -1,9 +1,12 @@
 /** What stands in the image tabs as long as there are no images. */
+
+import { counted } from "../../parts/counted";
 import { FlightPlanView } from "../../project/flight/FlightPlanView";
 import { PhotographsOnly } from "../../project/photographs/PhotographsOnly";
 import { openDemo } from "../../project/projectActions";
 import { flightPlan } from "../../project/tiles/flight";
-import { inspection } from "../../state/project";
+import { isBusy } from "../../state/activity";
+import { files, inspection } from "../../state/project";
 import { startTour } from "../../tour/steps";
 
 export function EmptyStage() {
@@ -13,6 +16,13 @@ export function EmptyStage() {
   }
   if (flightPlan.value !== null) {
     return <FlightPlanView />;
+  }
+  if (isBusy.value && files.value.length > 0) {
+    return (
+      <div class="empty">
+        <p>Reading {counted(files.value.length, "files")}…</p>
+      </div>
+    );
   }
   return (
     <div class="empty">

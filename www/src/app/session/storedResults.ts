@@ -5,7 +5,14 @@ import type { ParamTree } from "../../shared/paramTree";
 import type { SceneInfo } from "../../shared/records";
 import { changedParams } from "../settings/parameterForm";
 import { defaults, params } from "../state/parameters";
-import { allResults, exportNames, type ResultSets, restoreResults, setExportNames } from "../state/results";
+import {
+  allResults,
+  exportNames,
+  NO_RESULTS,
+  type ResultSets,
+  restoreResults,
+  setExportNames,
+} from "../state/results";
 import { scene, setScene } from "../state/scene";
 import { outdateStages, restoreStages, type StageState, stages } from "../state/stages";
 
@@ -22,7 +29,7 @@ export interface StoredResults {
 
 /** What there is to keep; null before the first stage has run. */
 export function presentResults(): StoredResults | null {
-  if (!stages.value.some(({ status }) => status === "done")) {
+  if (!stages.value.some(({ status }) => status === "done" || status === "outdated")) {
     return null;
   }
   return {
@@ -52,6 +59,25 @@ export function showStoredResults(kept: StoredResults): void {
       outdateStages(0);
     }
   });
+}
+
+/**
+ * What was found before files or wishes changed stays in view, outdated: all of it where the views are the same ones, else
+ * what does not count them.
+ */
+export function showOutdated(kept: StoredResults | null): void {
+  if (kept === null || scene.value === null) {
+    return;
+  }
+  const named = (views: SceneInfo["views"]) => views.map(({ name }) => name).join("/");
+  if (named(kept.views) === named(scene.value.views)) {
+    showStoredResults(kept);
+  } else {
+    const { facets, glb, ground, uncovered } = kept.results.main;
+    const main = { ...NO_RESULTS, facets, glb, ground, uncovered };
+    showStoredResults({ ...kept, views: [], results: { main, regions: NO_RESULTS } });
+  }
+  outdateStages(0);
 }
 
 /** In what parameters differ from the defaults, whatever the order of their names. */
