@@ -109,13 +109,9 @@ impl FirstLook {
     /// to [`LOOK_PIXEL_M`].
     pub(super) fn new(area: [f64; 4], options: LoadOptions, params: &Params) -> Result<Self> {
         let square = |tile: Tile| {
-            let [first, .., last] = [
-                &tile.cells[0],
-                &tile.cells[0],
-                &tile.cells[tile.cells.len() - 1],
-            ];
-            let [x0, y0, ..] = first.region;
-            let [.., x1, y1] = last.region;
+            // From the south-western cell to the north-eastern one.
+            let [x0, y0, ..] = tile.cells[0].region;
+            let [.., x1, y1] = tile.cells[tile.cells.len() - 1].region;
             let inner = MARGIN_M - SITE_MARGIN_M;
             Cell {
                 core: [x0 + MARGIN_M, y0 + MARGIN_M, x1 - MARGIN_M, y1 - MARGIN_M],
@@ -334,8 +330,8 @@ impl Sightings {
     }
 
     /// Gives the tiles of an area cells around what was seen, instead of those of the grid, and
-    /// returns the sites that reach into it: small ones with their middles in one square of the grid share a cell,
-    /// longer ones have their own, and the longest are divided by the grid.
+    /// returns the sites that reach into it: small ones with their middles in one square of the
+    /// grid share a cell, longer ones have their own, and the longest are divided by the grid.
     pub(super) fn place_cells(&self, tiles: &mut [Tile], area: [f64; 4]) -> Vec<Site> {
         let mut cells: BTreeMap<Place, Vec<Cell>> = BTreeMap::new();
         let mut small: BTreeMap<Place, [f64; 4]> = BTreeMap::new();

@@ -63,6 +63,7 @@ pub fn tileset_of_squares(scene: &Scene, squares: &[SquareContent]) -> Vec<u8> {
 fn tree(scene: &Scene, squares: &[&SquareContent], [x, y]: [i64; 2], side: i64) -> Option<Node> {
     let leaf = |square: &&SquareContent| Node::leaf(scene, square.buildings, square.uri);
     match (side, squares) {
+        (_, []) => return None,
         (1, [square]) => return Some(leaf(square)),
         (1, _) => return Some(Node::above(scene, squares.iter().map(leaf).collect())),
         _ => {}

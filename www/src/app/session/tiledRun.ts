@@ -69,7 +69,7 @@ export async function runTiles(turn: Turn, tileM: number): Promise<void> {
 
 async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<TileReport[]> {
   const tiles = await engine.call("planTiles", tileOptions(), tileM, plannedHeights());
-  await lookFirst(turn, kept);
+  await lookFirst(turn, kept, tiles.length);
   const reports: TileReport[] = [];
   for (const index of tiles.keys()) {
     const secondsLeft = secondsPerMegapixel.value * megapixelsLeft();
@@ -99,14 +99,17 @@ async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<Tile
 }
 
 /** Looks at the whole area in small photographs: the tiles then work where a roof may be. */
-async function lookFirst(turn: Turn, kept: KeptTiles): Promise<void> {
+async function lookFirst(turn: Turn, kept: KeptTiles, tiles: number): Promise<void> {
   const squares = await engine.call("squaresToLookAt");
+  turn.enter("run", "Looking for places where a roof may be");
+  const secondsLeft = secondsPerMegapixel.value * megapixelsLeft();
+  showTileRun({ tile: 0, fraction: 0, since: performance.now(), secondsLeft });
   for (let index = 0; index < squares; index++) {
-    turn.enter("run", "Looking for places where a roof may be");
     const key = -1 - index;
     let seen = await kept.read(key);
     if (seen === null) {
-      seen = await engine.call("lookAt", STAGE, index, squares);
+      // Together the squares count as much as the first tile.
+      seen = await engine.call("lookAt", STAGE, index, squares * tiles);
       await kept.keep(key, seen);
     }
     await engine.callMoving([seen.buffer], "takeLook", seen);
