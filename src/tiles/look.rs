@@ -45,14 +45,13 @@ const PLACE_M: f64 = 1.0;
 /// matching, and of two edges of a small roof.
 const REACH_M: f64 = 1.5;
 
-/// A core reaches so far beyond what was seen in it, metres, and what the cell looks at as far
-/// beyond the core. Assumption: of a roof at least so much is seen that its middle lies no further
-/// off, and what hides its eaves stands no further off.
+/// A core reaches so far beyond what was seen in it, metres. Assumption: of a roof at least so much
+/// is seen that its middle lies no further off.
 const SITE_MARGIN_M: f64 = 6.0;
 
-/// A site that is longer is divided by the grid, metres: no cell then looks at more than one of the
-/// grid does.
-const LARGEST_M: f64 = CELL_M + 2.0 * MARGIN_M - 4.0 * SITE_MARGIN_M;
+/// A site that is longer is divided by the grid, metres. Assumption: a long hall; more is a row of
+/// buildings.
+const LARGEST_M: f64 = CELL_M + MARGIN_M;
 
 /// Squares of [`PLACE_M`] of the world, by column and row.
 type Place = [i64; 2];
@@ -112,6 +111,7 @@ impl FirstLook {
             // From the south-western cell to the north-eastern one.
             let [x0, y0, ..] = tile.cells[0].region;
             let [.., x1, y1] = tile.cells[tile.cells.len() - 1].region;
+            // Lines and surfaces at the border are then seen whole.
             let inner = MARGIN_M - SITE_MARGIN_M;
             Cell {
                 core: [x0 + MARGIN_M, y0 + MARGIN_M, x1 - MARGIN_M, y1 - MARGIN_M],
@@ -329,12 +329,13 @@ impl Sightings {
         site
     }
 
-    /// Gives the tiles of an area cells around what was seen, instead of those of the grid, and
-    /// returns the sites that reach into it: small ones with their middles in one square of the
-    /// grid share a cell, longer ones have their own, and the longest are divided by the grid.
+    /// Leaves the tiles of an area the cells in which something was seen, and returns the sites that
+    /// reach into it: small ones with their middles in one square of the grid share a cell around
+    /// them, longer ones have their own, and the longest keep the cells of the grid.
     pub(super) fn place_cells(&self, tiles: &mut [Tile], area: [f64; 4]) -> Vec<Site> {
-        let mut cells: BTreeMap<Place, Vec<Cell>> = BTreeMap::new();
-        let mut small: BTreeMap<Place, [f64; 4]> = BTreeMap::new();
+        let mut of_grid: BTreeSet<Place> = BTreeSet::new();
+        let mut own: Vec<[f64; 4]> = Vec::new();
+        let mut shared: BTreeMap<Place, [f64; 4]> = BTreeMap::new();
         let mut sites = Vec::new();
         for places in self.connected() {
             let bounds = bounds_of(&places);
@@ -346,39 +347,40 @@ impl Sightings {
                 let [x0, y0, x1, y1] = bounds;
                 match (x1 - x0).max(y1 - y0) {
                     length if length > LARGEST_M => {
-                        for (square, bounds) in pieces_of(&places) {
-                            let cell = Cell::around(bounds, area, MARGIN_M);
-                            cells.entry(square).or_default().push(cell);
-                        }
+                        of_grid.extend(places.iter().map(|place| square_at(bounds_of([place]))));
                     }
-                    length if length > CELL_M => {
-                        let cell = Cell::around(bounds, area, SITE_MARGIN_M);
-                        cells.entry(square_at(bounds)).or_default().push(cell);
-                    }
+                    length if length > CELL_M => own.push(bounds),
                     _ => {
-                        let shared = small.entry(square_at(bounds)).or_insert(bounds);
-                        *shared = union(*shared, bounds);
+                        let all = shared.entry(square_at(bounds)).or_insert(bounds);
+                        *all = union(*all, bounds);
                     }
                 }
             }
             sites.push(site);
         }
-        for (square, bounds) in small {
-            let cell = Cell::around(bounds, area, SITE_MARGIN_M);
-            cells.entry(square).or_default().push(cell);
-        }
         for tile in tiles {
-            let squares: Vec<Place> = tile.cells.iter().map(Cell::place).collect();
-            let own = squares.iter().filter_map(|square| cells.remove(square));
-            tile.cells = own.flatten().collect();
+            let cells = tile.cells.iter().flat_map(|cell| {
+                let square = cell.place();
+                let is_of_grid = of_grid.contains(&square);
+                let small = shared.get(&square).filter(|_| !is_of_grid);
+                let longer = own
+                    .iter()
+                    .filter(move |bounds| square_at(**bounds) == square);
+                let around = longer
+                    .chain(small)
+                    .map(|bounds| Cell::around(*bounds, area));
+                is_of_grid.then_some(*cell).into_iter().chain(around)
+            });
+            tile.cells = cells.collect();
         }
         sites
     }
 }
 
 impl Cell {
-    /// Around what was seen, within an area, metres; it looks so far beyond its core.
-    fn around([x0, y0, x1, y1]: [f64; 4], area: [f64; 4], margin_m: f64) -> Self {
+    /// Around what was seen, within an area; it looks at the margin of the grid's cells around that,
+    /// without which the height of the ground is not known.
+    fn around([x0, y0, x1, y1]: [f64; 4], area: [f64; 4]) -> Self {
         let by = SITE_MARGIN_M;
         let core = [
             (x0 - by).max(area[0]),
@@ -386,7 +388,7 @@ impl Cell {
             (x1 + by).min(area[2]),
             (y1 + by).min(area[3]),
         ];
-        let by = by + margin_m;
+        let by = by + MARGIN_M;
         Self {
             core,
             region: [x0 - by, y0 - by, x1 + by, y1 + by],
@@ -434,17 +436,6 @@ fn union(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
 
 fn meet(a: [f64; 4], b: [f64; 4]) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
-}
-
-/// The parts of a site in the squares of the grid, as boxes.
-fn pieces_of(site: &BTreeSet<Place>) -> BTreeMap<Place, [f64; 4]> {
-    let mut pieces: BTreeMap<Place, [f64; 4]> = BTreeMap::new();
-    for place in site {
-        let bounds = bounds_of([place]);
-        let piece = pieces.entry(square_at(bounds)).or_insert(bounds);
-        *piece = union(*piece, bounds);
-    }
-    pieces
 }
 
 #[cfg(test)]
@@ -527,23 +518,22 @@ mod tests {
     }
 
     #[test]
-    fn a_row_longer_than_a_cell_has_its_own_and_a_longer_one_is_divided() {
+    fn a_row_longer_than_a_square_has_its_own_cell_and_a_longer_one_those_of_the_grid() {
         let area = [0.0, 0.0, 400.0, 400.0];
         let row = |count: i32| {
             let corners = (0..count).map(|i| [10.0 + 11.0 * f64::from(i), 25.0]);
             houses(&corners.collect::<Vec<_>>())
         };
-        let [[x0, _, x1, _]] = cores(&row(8), area)[..] else {
+        let [[x0, _, x1, _]] = cores(&row(7), area)[..] else {
             panic!("not one cell")
         };
-        assert!(x0 < 10.0 && x1 > 97.0, "{x0} {x1}");
-        let divided = cores(&row(20), area);
-        assert_eq!(divided.len(), 4);
-        assert!(
-            divided
-                .iter()
-                .all(|[x0, _, x1, _]| x1 - x0 <= CELL_M + 2.0 * SITE_MARGIN_M)
-        );
+        assert!(x0 < 10.0 && x1 > 86.0, "{x0} {x1}");
+        let mut squares = cores(&row(20), area).into_iter();
+        for i in 0..4 {
+            let x0 = f64::from(i) * CELL_M;
+            assert_eq!(squares.next(), Some([x0, 0.0, x0 + CELL_M, CELL_M]));
+        }
+        assert_eq!(squares.next(), None);
     }
 
     /// The outcome of the tile of an area, and how many places were seen to hold no roof.

@@ -15,7 +15,7 @@
 //! ```
 //!
 //! Invariant: a building is reconstructed whole in the cell that holds its middle, as long as what
-//! a first look shows of it is no longer than 96 m, so that no seam runs through a building.
+//! a first look shows of it is no longer than 90 m, so that no seam runs through a building.
 //! Buildings that touch each other and come from different cells may overlap by the accuracy of
 //! their eaves.
 //!
