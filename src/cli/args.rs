@@ -57,10 +57,10 @@ pub(super) struct InputArgs {
     /// where they show little of it each, so that half as many see a place.
     #[arg(long, value_name = "N", requires = "roi", value_parser = clap::value_parser!(u16).range(3..))]
     pub max_views: Option<u16>,
-    /// Reduce photographs by this whole factor first; by default large ones as long as their pixels
-    /// stay finer than 5 cm on the ground. 1 uses them in full.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
-    pub reduce: Option<u16>,
+    /// Reduce photographs by this factor first, as 2 or 1.5; by default large ones as long as their
+    /// pixels stay finer than 5 cm on the ground. 1 uses them in full.
+    #[arg(long, value_name = "F", value_parser = parse_reduction)]
+    pub reduce: Option<f64>,
     /// Reference system of the orientation's world, as EPSG:25832; it is named in the results.
     #[arg(long, value_name = "EPSG:N", value_parser = parse_crs)]
     pub crs: Option<u32>,
@@ -254,6 +254,12 @@ fn parse_positive(text: &str) -> Result<f64, String> {
     let parsed = text.trim().parse::<f64>().ok();
     let positive = parsed.filter(|value| value.is_finite() && *value > 0.0);
     positive.ok_or_else(|| format!("'{text}' is not a positive number"))
+}
+
+fn parse_reduction(text: &str) -> Result<f64, String> {
+    let parsed = text.trim().parse::<f64>().ok();
+    let factor = parsed.filter(|factor| (1.0..=64.0).contains(factor));
+    factor.ok_or_else(|| format!("'{text}' is not a number from 1 to 64"))
 }
 
 fn parse_crs(text: &str) -> Result<u32, String> {

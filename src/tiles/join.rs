@@ -17,7 +17,7 @@ use crate::base::params::TextureParams;
 use crate::lines::lines2d::ImageSegment;
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
-use crate::photographs::raster::reduced_colours;
+use crate::photographs::raster::colours_of_blocks;
 use crate::planes::half_planes::HalfPlane;
 use crate::results::export::{
     ExportInput, SquareContent, TILESET_FILE, atlas_jpeg, export_all, glb_of, tileset_of_squares,
@@ -279,7 +279,7 @@ fn join_atlases(parts: &[CellPart], chosen: &[Vec<usize>], to: &mut TexturedMode
     {
         let atlas = match places.reduction {
             1 => Cow::Borrowed(&part.textured.atlas),
-            reduction => Cow::Owned(reduced_colours(&part.textured.atlas, reduction)),
+            reduction => Cow::Owned(colours_of_blocks(&part.textured.atlas, reduction)),
         };
         image::imageops::replace(&mut to.atlas, &*atlas, i64::from(*x), i64::from(*y));
     }

@@ -58,9 +58,9 @@ struct JsLoadOptions {
     /// Most views of the region of interest; 12 when absent.
     #[tsify(optional)]
     max_views: Option<usize>,
-    /// Whole factor by which photographs are reduced; large ones as far as roofs allow when absent.
+    /// Factor by which photographs are reduced; large ones as far as roofs allow when absent.
     #[tsify(optional)]
-    reduction: Option<u32>,
+    reduction: Option<f64>,
     /// Height of the ground, metres, in the frame of the orientation.
     #[tsify(optional)]
     ground_z: Option<f64>,

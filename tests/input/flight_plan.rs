@@ -32,7 +32,7 @@ fn l_shaped_flight() -> Vec<InputFile> {
     files
 }
 
-fn options(ground_z: Option<f64>, reduction: Option<u32>) -> LoadOptions {
+fn options(ground_z: Option<f64>, reduction: Option<f64>) -> LoadOptions {
     LoadOptions {
         ground_z,
         reduction,
@@ -129,8 +129,8 @@ fn a_stated_region_has_all_its_squares() {
 #[test]
 fn the_size_of_photographs_does_not_change_what_is_left_out() {
     let files = l_shaped_flight();
-    let full = of_page(&files, &options(Some(0.0), Some(1)), None, 60.0);
-    for reduction in [None, Some(2), Some(4)] {
+    let full = of_page(&files, &options(Some(0.0), Some(1.0)), None, 60.0);
+    for reduction in [None, Some(2.0), Some(4.0)] {
         let reduced = options(Some(0.0), reduction);
         assert_eq!(of_page(&files, &reduced, None, 60.0), full);
         assert_eq!(of_command_line(&files, &reduced, 60.0), full);
@@ -150,5 +150,5 @@ fn measured_ground_gives_the_same_tiles() {
         of_command_line(&files, &unknown, 60.0)
     );
     // The page measures at whatever size it uses the photographs.
-    assert_eq!(ground_heights(&files, &options(None, Some(2))), ground);
+    assert_eq!(ground_heights(&files, &options(None, Some(2.0))), ground);
 }

@@ -12,7 +12,7 @@ use crate::base::ids::ViewId;
 use crate::orienting::known::Known;
 use crate::photographs::camera::Camera;
 use crate::photographs::raster::{
-    Channel, Gray, RedBlueDifference, estimate_noise, reduced_colours,
+    Channel, Gray, RedBlueDifference, colours_of_blocks, estimate_noise,
 };
 
 /// One photograph with its orientation.
@@ -95,7 +95,7 @@ impl Scene {
 
     /// The same with colours.
     pub fn reduced_in_colour(&self, factor: usize) -> Scene {
-        self.reduced_with(factor, |view| reduced_colours(&view.rgb, factor as u32))
+        self.reduced_with(factor, |view| colours_of_blocks(&view.rgb, factor as u32))
     }
 
     fn reduced_with(&self, factor: usize, rgb: impl Fn(&View) -> image::RgbImage) -> Scene {

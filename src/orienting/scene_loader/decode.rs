@@ -6,7 +6,7 @@ use crate::base::error::{Error, Result};
 use crate::orienting::orientation::{InputFile, Needed};
 use crate::orienting::scene::View;
 use crate::photographs::camera::undistort;
-use crate::photographs::raster::{PixelWindow, load_image, load_window};
+use crate::photographs::raster::{Coverage, PixelWindow, load_image, load_window};
 
 /// Decodes all views, at the same time where that does not take much more memory.
 pub(crate) fn decode_all(files: &[InputFile], planned: &[PlannedView]) -> Result<Vec<View>> {
@@ -35,6 +35,8 @@ struct Windows {
     part: PixelWindow,
     /// Of the reduced image.
     source: PixelWindow,
+    /// Of the image before it is reduced: all pixels that the source covers.
+    unreduced: PixelWindow,
     /// Of the image as it is stored.
     stored: PixelWindow,
     /// Is that all of it?
@@ -49,7 +51,7 @@ impl Windows {
             Some(lens) => region::source_of(part, whole, lens),
             None => part,
         };
-        let unreduced = source.map(|pixels| pixels * planned.reduction);
+        let unreduced = planned.unreduced(source);
         let [full_width, full_height] = planned.size;
         let stored = match planned.turn {
             Some(turn) => turn.stored_window(unreduced, [full_height, full_width]),
@@ -58,6 +60,7 @@ impl Windows {
         Self {
             part,
             source,
+            unreduced,
             stored,
             is_all: unreduced == [0, 0, full_width, full_height],
         }
@@ -70,6 +73,7 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
     let Windows {
         part,
         source,
+        unreduced,
         stored,
         is_all,
     } = Windows::of(planned);
@@ -87,8 +91,15 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
     if let Some(turn) = planned.turn {
         photograph = turn.apply(&photograph);
     }
-    if planned.reduction > 1 {
-        photograph = photograph.reduced(planned.reduction);
+    if planned.reduction > 1.0 {
+        let [columns, rows] = [0, 1].map(|axis| {
+            let range = |window: PixelWindow| {
+                let [from, count] = [window[axis], window[axis + 2]].map(|pixels| pixels as usize);
+                from..from + count
+            };
+            Coverage::new(range(source), planned.reduction, range(unreduced))
+        });
+        photograph = photograph.reduced(&columns, &rows);
     }
     let [column, row, width, height] = part;
     if let Some(lens) = &planned.distortion {
@@ -119,7 +130,7 @@ mod tests {
             .map(|(path, bytes)| InputFile::new(&path, bytes))
             .collect();
         let half = LoadOptions {
-            reduction: Some(2),
+            reduction: Some(2.0),
             ..LoadOptions::default()
         };
         let (full, half) = (
@@ -129,11 +140,13 @@ mod tests {
         assert!(
             half.warnings
                 .iter()
-                .any(|w| w.contains("at half of their width"))
+                .any(|w| w.contains("at 50 % of their width"))
         );
         for (a, b) in full.views.iter().zip(&half.views) {
             assert_eq!((b.camera.width, b.camera.height), (100, 100));
-            assert_eq!(b.gray, a.gray.reduced(2));
+            let blocks = a.gray.reduced(2).data;
+            let mut both = b.gray.data.iter().zip(&blocks);
+            assert!(both.all(|(b, a)| (b - a).abs() < 1e-6));
             for corner in truth.facets.iter().flat_map(|(_, ring)| ring) {
                 let (p, q) = (a.camera.project(corner), b.camera.project(corner));
                 let (p, q) = (p.unwrap().coords, q.unwrap().coords);
@@ -145,7 +158,7 @@ mod tests {
         let part = LoadOptions {
             roi: Some([x - 1.0, y - 1.0, x + 1.0, y + 1.0]),
             ground_z: Some(full.origin.z + truth.ground_z),
-            reduction: Some(2),
+            reduction: Some(2.0),
             ..LoadOptions::default()
         };
         let part = load_scene(&files, &part).unwrap();
@@ -158,9 +171,9 @@ mod tests {
         }
         // No image is reduced to nothing.
         let most = LoadOptions {
-            reduction: Some(1000),
+            reduction: Some(1000.0),
             ..LoadOptions::default()
         };
-        assert_eq!(load_scene(&files, &most).unwrap().views[0].camera.width, 66);
+        assert_eq!(load_scene(&files, &most).unwrap().views[0].camera.width, 64);
     }
 }

@@ -13,7 +13,7 @@ use super::plan::Plan;
 use super::planned_view::PlannedView;
 use super::region::MOST_VIEWS;
 use crate::base::geometry::mean_point;
-use crate::base::math::median;
+use crate::base::math::{larger, median};
 use crate::orienting::orientation::{InputFile, Needed};
 use crate::orienting::orientation_check::{CheckedView, surface_heights};
 use crate::photographs::camera::Camera;
@@ -76,9 +76,9 @@ pub fn finer_than(
     let cameras = plan.views.iter().map(|view| &view.whole);
     let whole = ground
         .and_then(|[low, high]| pixel_in_the_middle(cameras, 0.5 * (low + high) - plan.origin.z));
-    let factor = whole.map_or(1, |whole| reduction_to(pixel_m, whole));
+    let factor = whole.map_or(1.0, |whole| reduction_to(pixel_m, whole));
     LoadOptions {
-        reduction: Some(factor.max(options.reduction.unwrap_or(1))),
+        reduction: Some(larger(factor, options.reduction.unwrap_or(1.0))),
         ..options.clone()
     }
 }
@@ -96,34 +96,35 @@ pub(crate) fn whole_plan(files: &[InputFile], options: &LoadOptions) -> Plan {
 /// The plan of the whole images as they are, whatever the options reduce them by.
 pub(crate) fn unreduced_plan(files: &[InputFile], options: &LoadOptions) -> Plan {
     let unreduced = LoadOptions {
-        reduction: Some(1),
+        reduction: Some(1.0),
         ..options.clone()
     };
     whole_plan(files, &unreduced)
 }
 
-/// The largest whole factor that leaves pixels as fine as roofs need; 1 where the photographs are
+/// The largest factor that leaves pixels as fine as roofs need; 1 where the photographs are
 /// small, or do not show how far away the ground is.
-fn reduction(files: &[InputFile], options: &LoadOptions) -> u32 {
+fn reduction(files: &[InputFile], options: &LoadOptions) -> f64 {
     let whole = whole_plan(files, options);
     if are_small(&whole) {
-        return 1;
+        return 1.0;
     }
     let Some(z) = ground_height(files, options, &whole) else {
-        return 1;
+        return 1.0;
     };
     let cameras = whole.views.iter().map(|view| &view.whole);
-    pixel_in_the_middle(cameras, z).map_or(1, reduction_of)
+    pixel_in_the_middle(cameras, z).map_or(1.0, reduction_of)
 }
 
-/// The largest whole factor that leaves pixels of this size on the ground, metres, fine enough.
-pub(crate) fn reduction_of(pixel_m: f64) -> u32 {
+/// The largest factor that leaves pixels of this size on the ground, metres, fine enough.
+pub(crate) fn reduction_of(pixel_m: f64) -> f64 {
     reduction_to(FINEST_PIXEL_M, pixel_m)
 }
 
-/// The largest whole factor that leaves pixels finer than `to_m` of pixels of this size, metres.
-fn reduction_to(to_m: f64, pixel_m: f64) -> u32 {
-    ((to_m / pixel_m) as u32).max(1)
+/// The largest factor that leaves pixels finer than `to_m` of pixels of this size, metres; in
+/// tenths, so that a person can state it again.
+fn reduction_to(to_m: f64, pixel_m: f64) -> f64 {
+    larger((10.0 * to_m / pixel_m).floor() / 10.0, 1.0)
 }
 
 /// Median size of a pixel in the middle of an image on ground of this height, metres.
@@ -231,7 +232,8 @@ fn nearest(whole: &Plan, place: Option<Point2<f64>>) -> Vec<PlannedView> {
     nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     let matched = |view: &&PlannedView| {
         let mut view = PlannedView::clone(view);
-        view.reduce((view.whole.width.max(view.whole.height)).div_ceil(MATCHED_SIDE_PX));
+        let longest = view.whole.width.max(view.whole.height);
+        view.reduce(f64::from(longest.div_ceil(MATCHED_SIDE_PX)));
         view
     };
     nearest.iter().take(PHOTOGRAPHS).map(matched).collect()

@@ -42,10 +42,10 @@ pub struct LoadOptions {
     pub unused: Vec<String>,
     /// EPSG code of the world's reference system; the files' own when absent.
     pub epsg: Option<u32>,
-    /// Photographs are reduced by this whole factor; as far as roofs allow when absent (see
+    /// Photographs are reduced by this factor; as far as roofs allow when absent (see
     /// [`load_scene`](super::load_scene)).
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub reduction: Option<u32>,
+    pub reduction: Option<f64>,
     /// Memory that may be taken, megabytes; 1500 in the browser and 32768 elsewhere when absent.
     pub memory_mb: Option<u32>,
     /// Correct the error in the orientation that the images reveal, instead of refusing the scene.

@@ -32,8 +32,8 @@ pub(crate) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
     let decoding = views.iter().map(|v| {
         let chunk = decoding_bytes(files[v.file].content(), v.size);
         // Without its lens, turned, or before it is reduced, a view is a second image of its size.
-        let is_copied = v.distortion.is_some() || v.turn.is_some() || v.reduction > 1;
-        let unreduced = v.pixels() * u64::from(v.reduction).pow(2);
+        let is_copied = v.distortion.is_some() || v.turn.is_some() || v.reduction > 1.0;
+        let unreduced = (v.pixels() as f64 * v.reduction * v.reduction) as u64;
         chunk + if is_copied { unreduced * (3 + 4) } else { 0 }
     });
     // Views are decoded at the same time when there is room, one by one otherwise.

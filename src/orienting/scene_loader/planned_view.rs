@@ -4,11 +4,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::checks::camera_checks;
 use crate::base::error::{Error, Result};
+use crate::base::math::{larger, smaller};
 use crate::orienting::orientation::{AngleUnit, Crop, Orientation};
 use crate::orienting::orientation_check::CheckedView;
 use crate::orienting::scene::View;
 use crate::photographs::camera::{Camera, Distortion};
-use crate::photographs::raster::{ImageHeader, Turn};
+use crate::photographs::raster::{ImageHeader, PixelWindow, Turn};
 
 /// Images and parts of them keep so many pixels along a side, to be matched. Assumption.
 pub(super) const SMALLEST_SIDE_PX: u32 = 64;
@@ -30,8 +31,8 @@ pub(crate) struct PlannedView {
     pub name: String,
     /// Width and height of the whole image as it is, turned.
     pub size: [u32; 2],
-    /// By what whole factor it is reduced; all that follows is in the pixels of the reduced image.
-    pub reduction: u32,
+    /// By what factor it is reduced; all that follows is in the pixels of the reduced image.
+    pub reduction: f64,
     /// Camera of the whole image, local frame.
     pub whole: Camera,
     pub distortion: Option<Distortion>,
@@ -69,22 +70,36 @@ impl PlannedView {
         }
     }
 
-    /// The view of an image that is reduced by a whole factor more. Rows and columns that are left
-    /// over are dropped; the corner of the image is that of its first pixel, so that coordinates
-    /// are divided.
-    pub(crate) fn reduce(&mut self, factor: u32) {
+    /// The view of an image that is reduced by a factor more. What is left over of a pixel is
+    /// dropped; the corner of the image is that of its first pixel, so that coordinates are
+    /// divided.
+    pub(crate) fn reduce(&mut self, factor: f64) {
         let smallest = self.whole.width.min(self.whole.height);
-        let factor = factor.min(smallest / SMALLEST_SIDE_PX).max(1);
-        let by = 1.0 / f64::from(factor);
+        let most = f64::from(smallest) / f64::from(SMALLEST_SIDE_PX);
+        let factor = larger(smaller(factor, most), 1.0);
+        let by = 1.0 / factor;
         self.reduction *= factor;
         self.whole.k = Matrix3::from_diagonal(&Vector3::new(by, by, 1.0)) * self.whole.k;
-        self.whole.width = self.size[0] / self.reduction;
-        self.whole.height = self.size[1] / self.reduction;
+        [self.whole.width, self.whole.height] = self
+            .size
+            .map(|side| (f64::from(side) / self.reduction) as u32);
         self.crop = self.crop.map(|crop| Crop {
             column: crop.column * by,
             row: crop.row * by,
             frame: crop.frame.map(|side| side * by),
         });
+    }
+
+    /// The pixels of the whole image as it is that a window of the reduced one covers.
+    pub(crate) fn unreduced(&self, [column, row, width, height]: PixelWindow) -> PixelWindow {
+        let range = |from: u32, count: u32, side: u32| {
+            let first = (f64::from(from) * self.reduction) as u32;
+            let end = (f64::from(from + count) * self.reduction).ceil() as u32;
+            [first, end.min(side) - first]
+        };
+        let [x0, width] = range(column, width, self.size[0]);
+        let [y0, height] = range(row, height, self.size[1]);
+        [x0, y0, width, height]
     }
 
     /// The camera of the part that is used.
@@ -153,7 +168,7 @@ pub(super) fn planned_view(
         file,
         name: String::new(),
         size: [width, height],
-        reduction: 1,
+        reduction: 1.0,
         whole: camera,
         distortion,
         angles: orientation.angles,

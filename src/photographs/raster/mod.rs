@@ -8,6 +8,7 @@
 //!
 //! gray            a raster of f32: a grey value, or the red-blue difference of a pixel (red_blue)
 //! channel         the choice between the two; linear_light undoes the camera's tone curve
+//! coverage        smaller images, each pixel the mean of what it covers
 //! noise           standard deviation of a pixel
 //! bilinear, warp  sub-pixel values, one by one or along the rows of a homography
 //! filter, fill    Gaussian blur; polygons into masks and gaps filled smoothly
@@ -17,6 +18,7 @@
 
 mod bilinear;
 mod channel;
+mod coverage;
 mod files;
 pub(crate) mod fill;
 mod filter;
@@ -29,6 +31,7 @@ mod turn;
 mod warp;
 
 pub use channel::Channel;
+pub(crate) use coverage::{Coverage, colours_of_blocks, reduced_gray};
 pub use files::{
     Bands, Excerpt, HeaderNeeds, ImageHeader, Piece, UnreadImageFormat, decoding_bytes,
     header_needs, image_format, image_header, load_image, load_window, unread_image_format,
@@ -40,7 +43,6 @@ pub(crate) use fill::{fill_gaps, mark_inside};
 pub use filter::gaussian_blur;
 pub use gray::Gray;
 pub use noise::estimate_noise;
-pub(crate) use photograph::reduced_colours;
 pub use photograph::{Photograph, PixelWindow};
 pub use red_blue::RedBlueDifference;
 pub use turn::Turn;

@@ -49,7 +49,7 @@ pub struct FlightOverview {
     /// Size of a pixel on the ground, the middle one of all photographs.
     pub pixel_m: f64,
     /// The factor by which photographs may be reduced, so that roofs do not suffer.
-    pub reduction: u32,
+    pub reduction: f64,
     /// The photographs in use.
     pub footprints: Vec<Footprint>,
     /// The box of what three or more show, in whole metres: x0, y0, x1, y1.
@@ -121,7 +121,7 @@ impl<'a> Flight<'a> {
         };
         let shown = ShownArea::of_plan(&plan, heights);
         for view in &mut plan.views {
-            view.reduce(options.reduction.unwrap_or(1));
+            view.reduce(options.reduction.unwrap_or(1.0));
         }
         Ok(Self {
             files,
@@ -160,8 +160,7 @@ impl<'a> Flight<'a> {
                 .collect(),
         };
         let pixel_m = pixel_in_the_middle(cameras.iter().copied(), z).unwrap_or_default();
-        let unreduced = |view: &PlannedView| f64::from(view.reduction);
-        let reduction = self.plan.views.first().map_or(1.0, unreduced);
+        let reduction = (self.plan.views.first()).map_or(1.0, |view| view.reduction);
         let moved = |[x0, y0, x1, y1]: [f64; 4], by: f64| {
             let [x, y] = [by * origin.x, by * origin.y];
             [x0 + x, y0 + y, x1 + x, y1 + y]

@@ -84,7 +84,7 @@ impl Plan {
             };
             match view {
                 Ok(mut view) => {
-                    view.reduce(options.reduction.unwrap_or(1));
+                    view.reduce(options.reduction.unwrap_or(1.0));
                     views.push(view);
                 }
                 Err(error) => self.errors.push(error),
@@ -142,16 +142,11 @@ fn notice_of_fisheyes(views: &[PlannedView]) -> Option<String> {
 
 /// By how much photographs are reduced.
 fn notice_of_reduction(options: &LoadOptions) -> Option<String> {
-    let factor = options.reduction.filter(|&factor| factor > 1)?;
+    let factor = options.reduction.filter(|&factor| factor > 1.0)?;
     Some(format!(
-        "photographs are used at {} of their width and height, as fine as roofs need (--reduce 1 \
-         uses them in full)",
-        match factor {
-            2 => "half".to_owned(),
-            3 => "a third".to_owned(),
-            4 => "a quarter".to_owned(),
-            more => format!("1/{more}"),
-        }
+        "photographs are used at {:.0} % of their width and height, as fine as roofs need \
+         (--reduce 1 uses them in full)",
+        100.0 / factor
     ))
 }
 

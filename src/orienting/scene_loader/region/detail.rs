@@ -37,7 +37,7 @@ type CameraKind = [u32; 3];
 
 fn kind(view: &PlannedView) -> CameraKind {
     let [width, height] = view.size;
-    let focal = view.whole.k[(0, 0)] * f64::from(view.reduction) / f64::from(width.max(1));
+    let focal = view.whole.k[(0, 0)] * view.reduction / f64::from(width.max(1));
     [width, height, (100.0 * focal).round() as u32]
 }
 

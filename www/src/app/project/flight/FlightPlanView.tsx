@@ -326,5 +326,5 @@ function SizeFields() {
 }
 
 function shareText(by: number): string {
-  return by === 1 ? "full size" : `1/${by} of their size`;
+  return by === 1 ? "full size" : `${Math.round(100 / by)} % of their size`;
 }
