@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use ridgeline::base::execution::progress::silent;
-use ridgeline::tiles::Area;
+use ridgeline::tiles::{Area, Tile};
 
 use super::failure::Failure;
 use super::files;
@@ -20,12 +20,12 @@ pub(super) fn reconstruct_tiles(
 ) -> Result<(), Failure> {
     let refuse = |e: ridgeline::Error| refusal(&e, seen);
     eprintln!("{seen}");
-    let count = area.tiles().len();
     println!("{}", area.in_words());
     let start = Instant::now();
     area.look(input, &silent()).map_err(refuse)?;
     let time = start.elapsed().as_secs_f64();
     println!("{} ({time:.1} s)", area.seen_in_words());
+    let work: Vec<f64> = area.tiles().iter().map(Tile::looked_at_m2).collect();
     let mut seconds = Vec::new();
     loop {
         let start = Instant::now();
@@ -35,9 +35,15 @@ pub(super) fn reconstruct_tiles(
         let time = start.elapsed().as_secs_f64();
         seconds.push(time);
         let done = seconds.len();
-        let left = seconds.iter().sum::<f64>() / done as f64 * (count - done) as f64;
+        let [worked, rest] = [&work[..done], &work[done..]].map(|part| part.iter().sum::<f64>());
+        let left = if worked > 0.0 {
+            seconds.iter().sum::<f64>() / worked * rest
+        } else {
+            0.0
+        };
         println!(
-            "tile {done} of {count}: {} ({time:.1} s{})",
+            "tile {done} of {}: {} ({time:.1} s{})",
+            work.len(),
             tile.outcome,
             left_in_words(left)
         );

@@ -47,6 +47,7 @@ use crate::orienting::scene::Scene;
 use crate::photographs::camera::Camera;
 use crate::planes::half_planes::HalfPlane;
 use crate::planes::objectspace::{image_segments, world_lines};
+use crate::planes::terrain::Ground;
 use crate::results::export;
 use crate::results::export::export_all;
 use crate::results::texture::TexturedModel;
@@ -266,6 +267,18 @@ impl Run {
         });
         progress(1.0);
         summary
+    }
+
+    /// Takes the ground as it is known already, instead of running its stage, and drops the results
+    /// of the stages behind it.
+    pub(crate) fn take_ground(&mut self, ground: Ground) {
+        self.drop_from(Stage::Ground);
+        self.results.ground = Some(ground);
+        self.summaries.push(StageSummary {
+            stage: Stage::Ground,
+            counts: Vec::new(),
+            warnings: Vec::new(),
+        });
     }
 
     /// Runs all stages, with nobody listening.

@@ -13,6 +13,7 @@ use super::division::Division;
 use super::join::{CellPart, Joined, join};
 use super::look::{self, FirstLook, Sightings, Site};
 use super::model_parts::{subset, walls_of};
+use super::seen_ground::SeenGround;
 use super::tile::{Cell, Tile};
 use crate::base::error::{Error, Result};
 use crate::base::execution::Listener;
@@ -24,6 +25,7 @@ use crate::orienting::scene_loader::{
     LoadOptions, PlannedScene, ShownArea, files_of_settling, finer_than, settled, whole_views,
 };
 use crate::pipeline::{Run, Stage, counted};
+use crate::planes::terrain::Ground;
 use crate::results::texture::texture_model;
 use crate::roofs::walls::place_walls_of;
 
@@ -37,7 +39,7 @@ pub struct Area {
     left_out: Vec<[f64; 4]>,
     pub(super) look: FirstLook,
     /// What the squares show that were looked at, and how many those are.
-    seen: (Sightings, usize),
+    pub(super) seen: (Sightings, usize),
     /// What is connected of that.
     sites: Vec<Site>,
     /// Sum of all that the tiles are made from, but for their cells.
@@ -195,8 +197,9 @@ impl Area {
         let Some(tile) = self.tiles.get(self.reports.len()) else {
             return Ok(None);
         };
-        let (options, params, whole) = (&self.options, &self.params, &self.whole);
-        let worked = work_off(source, options, params, tile, whole, progress)?;
+        let (options, params) = (&self.options, &self.params);
+        let known = (&self.whole, &self.seen.0.ground);
+        let worked = work_off(source, options, params, tile, known, progress)?;
         self.parts.extend(worked.parts);
         if let Some(error) = worked.first_error {
             self.first_error.get_or_insert(error);
@@ -309,13 +312,13 @@ pub(super) struct WorkedTile {
 }
 
 /// Works off the cells of a tile, one after the other: the photographs of one are whole until those
-/// of the next one are known. An error says which photograph cannot be had.
+/// of the next one are known. `whole` has all views. An error says which photograph cannot be had.
 pub(super) fn work_off(
     source: &mut dyn FileSource,
     options: &LoadOptions,
     params: &Params,
     tile: &Tile,
-    whole: &Scene,
+    (whole, ground): (&Scene, &SeenGround),
     progress: &Listener,
 ) -> Result<WorkedTile> {
     let mut parts = Vec::new();
@@ -331,7 +334,8 @@ pub(super) fn work_off(
         let planned = PlannedScene::new(source, &options)?;
         match planned.load(source.files()) {
             Ok(scene) => {
-                parts.push(part(scene, params, cell, whole, &listener));
+                let ground = ground.within(cell.region, &scene.origin);
+                parts.push(part(scene, params, (cell, ground), whole, &listener));
             }
             Err(error) => {
                 first_error.get_or_insert(error);
@@ -415,7 +419,7 @@ pub(super) fn model_files(
 fn part(
     scene: Scene,
     params: &Params,
-    cell: &Cell,
+    (cell, mut ground): (&Cell, Option<Ground>),
     whole: &Scene,
     progress: &Listener,
 ) -> CellPart {
@@ -428,7 +432,12 @@ fn part(
         let (done, all) = (i as f64, stages.len() as f64);
         let of_cell = Listener::clone(progress);
         let listener: Listener = Arc::new(move |fraction| of_cell((done + fraction) / all));
-        run.step(stage, &listener);
+        match ground.take_if(|_| stage == Stage::Ground) {
+            Some(ground) => run.take_ground(ground),
+            None => {
+                run.step(stage, &listener);
+            }
+        }
     }
     let (scene, results) = (run.scene(), run.results());
     let found = "the stages have run";

@@ -33,7 +33,8 @@ impl Area {
     ) -> Option<Vec<u8>> {
         let tile = self.tiles.get(index)?;
         let (options, params) = (&self.options, &self.params);
-        let worked = work_off(&mut files, options, params, tile, &self.whole, progress)
+        let known = (&self.whole, &self.seen.0.ground);
+        let worked = work_off(&mut files, options, params, tile, known, progress)
             .expect("files in memory can be had");
         let outcome = TileOutcome {
             report: worked.report,

@@ -15,6 +15,7 @@ use std::sync::Arc;
 use nalgebra::{Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
+use super::seen_ground::SeenGround;
 use super::tile::{CELL_M, Cell, MARGIN_M, Tile, plan_tiles, square_at};
 use crate::base::error::{Error, Result};
 use crate::base::evidence::EvidenceModel;
@@ -49,6 +50,10 @@ const REACH_M: f64 = 1.5;
 /// is seen that its middle lies no further off.
 const SITE_MARGIN_M: f64 = 6.0;
 
+/// What a cell looks at where the ground is known reaches so far beyond its core, metres.
+/// Assumption: what hides eaves stands no further off, nor do the eaves of a neighbour.
+const NEAR_M: f64 = 12.0;
+
 /// A site that is longer is divided by the grid, metres. Assumption: a long hall; more is a row of
 /// buildings.
 const LARGEST_M: f64 = CELL_M + MARGIN_M;
@@ -75,9 +80,12 @@ struct Seen {
     is_given: bool,
 }
 
-/// What a first look shows, place by place.
+/// What a first look shows: of roofs place by place, and the ground.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Sightings(BTreeMap<Place, Seen>);
+pub(super) struct Sightings {
+    places: BTreeMap<Place, Seen>,
+    pub ground: SeenGround,
+}
 
 /// A site: what is connected of what a first look shows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -180,7 +188,9 @@ impl FirstLook {
         }
         let mut run = Run::new(scene, self.params.clone());
         run.step(Stage::Dense, progress);
-        Ok(Sightings::of_run(&run).within(square.core))
+        let mut seen = Sightings::of_run(&run).within(square.core);
+        seen.ground = SeenGround::of_run(&run, square);
+        Ok(seen)
     }
 }
 
@@ -233,10 +243,10 @@ impl Sightings {
         let [[x0, y0], [x1, y1]] = [-REACH_M, REACH_M].map(|by| place_at(p.map(|v| v + by).into()));
         for (x, y) in (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| (x, y))) {
             if (middle_of(&[x, y]) - p).norm() <= REACH_M {
-                self.0.entry([x, y]).or_default();
+                self.places.entry([x, y]).or_default();
             }
         }
-        self.0.entry(place_at(p.into())).or_default()
+        self.places.entry(place_at(p.into())).or_default()
     }
 
     fn mark_line(&mut self, line: &Line3d, origin: &Vector3<f64>) {
@@ -252,14 +262,14 @@ impl Sightings {
     fn give(&mut self, low: [f64; 2], high: [f64; 2]) {
         let ([x0, y0], [x1, y1]) = (place_at(low), high.map(|v| (v / PLACE_M).ceil() as i64));
         for place in (y0..y1).flat_map(|y| (x0..x1).map(move |x| [x, y])) {
-            self.0.entry(place).or_default().is_given = true;
+            self.places.entry(place).or_default().is_given = true;
         }
     }
 
     /// Those in a box of whole places.
     fn within(mut self, [x0, y0, x1, y1]: [f64; 4]) -> Self {
         let ([x0, y0], [x1, y1]) = (place_at([x0, y0]), place_at([x1, y1]));
-        self.0
+        self.places
             .retain(|[x, y], _| (x0..x1).contains(x) && (y0..y1).contains(y));
         self
     }
@@ -279,12 +289,13 @@ impl Sightings {
 
     /// Adds what another square shows.
     pub(super) fn add(&mut self, other: Self) {
-        self.0.extend(other.0);
+        self.places.extend(other.places);
+        self.ground.add(other.ground);
     }
 
     /// What is connected.
     fn connected(&self) -> Vec<BTreeSet<Place>> {
-        let mut rest: BTreeSet<Place> = self.0.keys().copied().collect();
+        let mut rest: BTreeSet<Place> = self.places.keys().copied().collect();
         let mut all = Vec::new();
         while let Some(start) = rest.pop_first() {
             let (mut places, mut front) = (BTreeSet::from([start]), vec![start]);
@@ -302,7 +313,7 @@ impl Sightings {
     }
 
     fn weighed(&self, places: &BTreeSet<Place>) -> Site {
-        let seen = || places.iter().map(|place| self.0[place]);
+        let seen = || places.iter().map(|place| self.places[place]);
         let middles: Vec<Point2<f64>> = places.iter().map(middle_of).collect();
         let corners = least_rectangle(&middles, 0.5 * PLACE_M, &Plane::level(0.0));
         let [along, across] = [corners[1] - corners[0], corners[2] - corners[1]];
@@ -329,9 +340,9 @@ impl Sightings {
         site
     }
 
-    /// Leaves the tiles of an area the cells in which something was seen, and returns the sites that
-    /// reach into it: small ones with their middles in one square of the grid share a cell around
-    /// them, longer ones have their own, and the longest keep the cells of the grid.
+    /// Leaves the tiles of an area the cells in which something was seen, and returns the sites
+    /// that reach into it: small ones with their middles in one square of the grid share a cell
+    /// around them, longer ones have their own, and the longest keep the cells of the grid.
     pub(super) fn place_cells(&self, tiles: &mut [Tile], area: [f64; 4]) -> Vec<Site> {
         let mut of_grid: BTreeSet<Place> = BTreeSet::new();
         let mut own: Vec<[f64; 4]> = Vec::new();
@@ -368,7 +379,7 @@ impl Sightings {
                     .filter(move |bounds| square_at(**bounds) == square);
                 let around = longer
                     .chain(small)
-                    .map(|bounds| Cell::around(*bounds, area));
+                    .map(|bounds| Cell::around(*bounds, area, &self.ground));
                 is_of_grid.then_some(*cell).into_iter().chain(around)
             });
             tile.cells = cells.collect();
@@ -378,20 +389,24 @@ impl Sightings {
 }
 
 impl Cell {
-    /// Around what was seen, within an area; it looks at the margin of the grid's cells around that,
-    /// without which the height of the ground is not known.
-    fn around([x0, y0, x1, y1]: [f64; 4], area: [f64; 4]) -> Self {
-        let by = SITE_MARGIN_M;
-        let core = [
-            (x0 - by).max(area[0]),
-            (y0 - by).max(area[1]),
-            (x1 + by).min(area[2]),
-            (y1 + by).min(area[3]),
-        ];
-        let by = by + MARGIN_M;
+    /// Around what was seen, within an area; where the ground is not known, it looks as far around
+    /// that as the grid's cells do.
+    fn around(bounds: [f64; 4], area: [f64; 4], ground: &SeenGround) -> Self {
+        let grown = |[x0, y0, x1, y1]: [f64; 4], by: f64| [x0 - by, y0 - by, x1 + by, y1 + by];
+        let [x0, y0, x1, y1] = grown(bounds, SITE_MARGIN_M);
+        let near = grown([x0, y0, x1, y1], NEAR_M);
+        let is_known = ground.within(near, &Vector3::zeros()).is_some();
         Self {
-            core,
-            region: [x0 - by, y0 - by, x1 + by, y1 + by],
+            core: [
+                x0.max(area[0]),
+                y0.max(area[1]),
+                x1.min(area[2]),
+                y1.min(area[3]),
+            ],
+            region: match is_known {
+                true => near,
+                false => grown([x0, y0, x1, y1], MARGIN_M),
+            },
         }
     }
 }

@@ -33,6 +33,7 @@ mod look;
 mod model_parts;
 mod part_file;
 mod plan;
+mod seen_ground;
 mod tile;
 
 pub use area::{Area, TileReport, refuse_corrections};

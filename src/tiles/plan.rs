@@ -20,6 +20,7 @@ use super::division::Division;
 use super::join::Joined;
 use super::look::Site;
 use super::part_file::{PartKey, TileOutcome};
+use super::seen_ground::SeenGround;
 use super::tile::{Cell, Tile};
 use crate::base::error::{Error, Result};
 use crate::base::execution::Listener;
@@ -235,6 +236,9 @@ pub struct BlockPlan {
     /// What a first look shows: the cells of the tiles lie around the sites that are worked on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sites: Vec<Site>,
+    /// The ground as a first look shows it, centimetres.
+    #[serde(default, skip_serializing_if = "SeenGround::is_empty")]
+    pub(super) ground: SeenGround,
 }
 
 impl BlockPlan {
@@ -268,6 +272,7 @@ impl BlockPlan {
             tiles: planned,
             left_out: divided.left_out,
             sites,
+            ground: seen.ground,
         })
     }
 
@@ -352,7 +357,8 @@ impl BlockPlan {
             cells: planned.cells.iter().map(|cell| cell.place).collect(),
         };
         let (options, params) = (&self.options, &self.params);
-        let worked = work_off(&mut files, options, params, &place, &whole, progress)?;
+        let known = (&whole, &self.ground);
+        let worked = work_off(&mut files, options, params, &place, known, progress)?;
         let words = worked.report.outcome.clone();
         let outcome = TileOutcome {
             report: worked.report,

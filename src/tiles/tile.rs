@@ -102,6 +102,15 @@ pub fn plan_tiles(area: [f64; 4], tile_m: f64) -> Result<Vec<Tile>> {
     Ok(tiles)
 }
 
+impl Tile {
+    /// The ground that its cells look at, square metres, twice where two of them do: what it takes
+    /// to work them off grows with it.
+    pub fn looked_at_m2(&self) -> f64 {
+        let area = |[x0, y0, x1, y1]: [f64; 4]| (x1 - x0) * (y1 - y0);
+        self.cells.iter().map(|cell| area(cell.region)).sum()
+    }
+}
+
 impl Cell {
     /// How far a place lies inside the core, metres; negative outside.
     pub(super) fn depth(&self, p: &Point2<f64>) -> f64 {

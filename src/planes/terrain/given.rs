@@ -24,7 +24,7 @@ const MARGIN_M: f64 = 40.0;
 /// ditches.
 const BLOCK_M: f64 = 1.0;
 const MOST_BLOCKS: f64 = 1e6;
-/// Least share of the blocks that the model covers.
+/// Least share of the blocks whose heights are known.
 const LEAST_COVERED: f64 = 0.5;
 /// What stands higher than this above the ground, metres, is a roof or a tree.
 const ROOF_M: f64 = 2.0;
@@ -66,7 +66,7 @@ impl Ground {
         if !is_none {
             let lift = comparison.moved_m().z;
             let known = |p: &Point2<f64>| Some(terrain.z_at(p.x, p.y)? + lift);
-            match self.laid(ends, known) {
+            match Self::laid(around(ends), BLOCK_M, known, Some(&self)) {
                 Some(ground) => self = ground,
                 None => comparison = unused,
             }
@@ -75,29 +75,21 @@ impl Ground {
         self
     }
 
-    /// The ground in fine blocks at known heights, around lines; `None` where hardly any are known.
-    fn laid(
-        &self,
-        ends: &[Point3<f64>],
+    /// The ground in blocks of this size at known heights of a box (x0, y0, x1, y1, metres, local
+    /// frame), and elsewhere as another one or a plane has it; `None` where hardly any are known.
+    pub(crate) fn laid(
+        [x0, y0, x1, y1]: [f64; 4],
+        block_m: f64,
         known: impl Fn(&Point2<f64>) -> Option<f64>,
+        otherwise: Option<&Self>,
     ) -> Option<Self> {
-        let range = |axis: usize| {
-            let mut all: Vec<f64> = ends.iter().map(|p| p[axis]).collect();
-            all.sort_by(f64::total_cmp);
-            // A few wrong lines may lie far off.
-            let share = |f: f64| all[(f * (all.len() - 1) as f64) as usize];
-            [share(0.01) - MARGIN_M, share(0.99) + MARGIN_M]
-        };
-        let ([x0, x1], [y0, y1]) = (range(0), range(1));
-        let block_m = larger(BLOCK_M, ((x1 - x0) * (y1 - y0) / MOST_BLOCKS).sqrt());
+        let block_m = larger(block_m, ((x1 - x0) * (y1 - y0) / MOST_BLOCKS).sqrt());
         let mut ground = Self {
             min: Point2::new(x0, y0),
             block_m,
             columns: ((x1 - x0) / block_m) as usize + 1,
             rows: ((y1 - y0) / block_m) as usize + 1,
-            rises: Vec::new(),
-            plane: self.plane,
-            terrain: None,
+            ..Self::level(0.0)
         };
         let blocks = ground.columns * ground.rows;
         let heights: Vec<Option<f64>> = (0..blocks).map(|k| known(&ground.middle(k))).collect();
@@ -110,11 +102,13 @@ impl Ground {
             return None;
         }
         let plane = Plane::fit(&lying).map(Plane::upwards);
-        ground.plane = plane.filter(|p| p.normal.z > 0.5).unwrap_or(self.plane);
+        ground.plane =
+            (plane.filter(|p| p.normal.z > 0.5)).or(otherwise.map(|other| other.plane))?;
         ground.rises = (heights.iter().enumerate())
             .map(|(k, z)| {
                 let at = ground.middle(k);
-                z.unwrap_or_else(|| self.z_at(&at)) - ground.plane.z_at(at.x, at.y)
+                let plane = ground.plane.z_at(at.x, at.y);
+                z.unwrap_or_else(|| otherwise.map_or(plane, |other| other.z_at(&at))) - plane
             })
             .collect();
         Some(ground)
@@ -152,6 +146,19 @@ impl Ground {
         }
         walls > WALLS * high && walls > 0.0 && (left as f64) < ROOFS_LEFT * roofs as f64
     }
+}
+
+/// The box in which the ground is known around lines, of the sorted ends of these, metres.
+fn around(ends: &[Point3<f64>]) -> [f64; 4] {
+    let range = |axis: usize| {
+        let mut all: Vec<f64> = ends.iter().map(|p| p[axis]).collect();
+        all.sort_by(f64::total_cmp);
+        // A few wrong lines may lie far off.
+        let share = |f: f64| all[(f * (all.len() - 1) as f64) as usize];
+        [share(0.01) - MARGIN_M, share(0.99) + MARGIN_M]
+    };
+    let ([x0, x1], [y0, y1]) = (range(0), range(1));
+    [x0, y0, x1, y1]
 }
 
 /// How far the ground that the images show lies above the model, metres.

@@ -42,16 +42,17 @@ pub struct Ground {
     terrain: Option<KnownComparison>,
 }
 
-/// Cell of the ground grid, metres.
-const CELL: f64 = 5.0;
 /// Positions within this distance of a block's middle settle its height, metres.
 const SETTLING: f64 = 7.5;
 impl Ground {
+    /// Side of the blocks in which it is estimated, metres.
+    pub(crate) const BLOCK_M: f64 = 5.0;
+
     /// The same height everywhere.
     pub fn level(z: f64) -> Self {
         Self {
             min: Point2::origin(),
-            block_m: CELL,
+            block_m: Self::BLOCK_M,
             columns: 0,
             rows: 0,
             rises: Vec::new(),
@@ -117,12 +118,12 @@ impl Ground {
             return Self::level(elsewhere);
         }
         let (columns, rows) = (
-            ((max.x - min.x) / CELL) as usize + 1,
-            ((max.y - min.y) / CELL) as usize + 1,
+            ((max.x - min.x) / Self::BLOCK_M) as usize + 1,
+            ((max.y - min.y) / Self::BLOCK_M) as usize + 1,
         );
         let mut ground = Self {
             min,
-            block_m: CELL,
+            block_m: Self::BLOCK_M,
             columns,
             rows,
             rises: vec![0.0; columns * rows],
