@@ -8,7 +8,8 @@ const PORT = Number(process.env["PORT"] ?? 4173);
 export default defineConfig({
   testDir: "test/e2e",
   outputDir: "test-results",
-  workers: 1,
+  // What measures time (@alone) has the machine for itself.
+  workers: 2,
   timeout: 150_000,
   // Drawing in software may be late on a busy machine; what fails twice is wrong.
   retries: 1,

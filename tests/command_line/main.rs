@@ -7,6 +7,7 @@ mod cases;
 mod common;
 mod corrections;
 mod examples;
+mod flight;
 mod options;
 mod orient;
 mod plan_tile_join;

@@ -405,9 +405,8 @@ fn changed_at(bytes: &[u8], place: f64) -> Vec<u8> {
     bytes
 }
 
-#[test]
-fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
-    let block = Block::planned();
+/// The folder of a plan whose tiles have three views each, and the plan.
+fn planned_with_three_views(block: &Block) -> (PathBuf, Value) {
     let mut command = block.command();
     command.args(["plan", "scene", "--tile", "60", "--max-views", "3"]);
     let planned = command.args(AREA).args(["--out", "few"]).output().unwrap();
@@ -415,6 +414,13 @@ fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
     let folder = block.0.path().join("few");
     let plan: Value =
         serde_json::from_slice(&fs::read(folder.join("tiles.json")).unwrap()).unwrap();
+    (folder, plan)
+}
+
+#[test]
+fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
+    let block = Block::planned();
+    let (folder, plan) = planned_with_three_views(&block);
     let views = plan["tiles"][0]["cells"][0]["views"].as_array().unwrap();
     let is_read = |name: &str| views.iter().any(|view| view["view"] == name);
     assert_eq!(views.len(), 3);
@@ -473,13 +479,7 @@ fn tiff_files() -> Vec<(String, Vec<u8>)> {
 #[test]
 fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
     let block = Block::planned_of(tiff_files());
-    let mut command = block.command();
-    command.args(["plan", "scene", "--tile", "60", "--max-views", "3"]);
-    let planned = command.args(AREA).args(["--out", "few"]).output().unwrap();
-    assert!(planned.status.success(), "{}", words(&planned));
-    let folder = block.0.path().join("few");
-    let plan: Value =
-        serde_json::from_slice(&fs::read(folder.join("tiles.json")).unwrap()).unwrap();
+    let (folder, plan) = planned_with_three_views(&block);
     let views = plan["tiles"][0]["cells"][0]["views"].as_array().unwrap();
     let is_read = |name: &str| views.iter().any(|view| view["view"] == name);
     let images = block.scene().join("images");
@@ -572,42 +572,4 @@ fn a_killed_process_leaves_no_half_part_and_changes_no_byte() {
     }
     assert!(block.join().status.success());
     assert!(files_in(&block.out()) == reference().model);
-}
-
-#[test]
-fn a_flight_is_worked_off_in_squares_by_itself() {
-    let folder = tempfile::tempdir().unwrap();
-    let house = Path::new(env!("CARGO_MANIFEST_DIR")).join("www/test/fixtures/house");
-    // Six photographs three times over: more than are used at once.
-    for (name, bytes) in files_of(&house).chain(files_of(&house.join("orientation/projection"))) {
-        for pass in ["a", "b", "c"] {
-            fs::write(folder.path().join(format!("{pass}_{name}")), &bytes).unwrap();
-        }
-    }
-    let mut command = ridgeline();
-    command.arg("reconstruct").arg(folder.path());
-    command.args(["--ground-z", "100", "--out"]);
-    let out = folder.path().join("out");
-    let output = command.arg(&out).output().unwrap();
-    let said = words(&output);
-    assert!(output.status.success(), "{said}");
-    assert!(
-        said.contains("18 views; area") && said.contains("tile 4 of 4"),
-        "{said}"
-    );
-    let model: Value =
-        serde_json::from_slice(&fs::read(out.join("model.city.json")).unwrap()).unwrap();
-    assert_eq!(model["CityObjects"].as_object().unwrap().len(), 1, "{said}");
-}
-
-/// The photographs and projection matrices in a folder.
-fn files_of(folder: &Path) -> impl Iterator<Item = (String, Vec<u8>)> {
-    let paths = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
-    let inputs = paths.filter(|path| path.extension().is_some_and(|e| e == "jpg" || e == "P"));
-    inputs.map(|path| {
-        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
-        (name, fs::read(&path).unwrap())
-    })
 }

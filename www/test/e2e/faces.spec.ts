@@ -62,7 +62,7 @@ test("the model fills the window at every size, zoom and type, and what is selec
         location.hash = `${location.hash.replace(/&select=[^&]*/, "")}&select=facet:0`;
       });
       await expect(page.getByTestId("inspector")).toContainText("Facet 0");
-      expect(await boxOf(page), size).toEqual(before);
+      await expect.poll(() => boxOf(page), size).toEqual(before);
       await page.getByRole("button", { name: "Clear" }).click();
     }
     await page.setViewportSize({ width: 1920, height: 1080 });

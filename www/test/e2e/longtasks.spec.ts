@@ -68,7 +68,7 @@ function observe(): void {
   }).observe({ entryTypes: ["longtask"] });
 }
 
-test("nothing holds the page up while the pipeline runs", async ({ page }) => {
+test("nothing holds the page up while the pipeline runs", { tag: "@alone" }, async ({ page }) => {
   await page.addInitScript(observe);
   // With a core left for the page, as on any machine of more than two.
   await page.addInitScript(() => {

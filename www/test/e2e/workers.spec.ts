@@ -16,7 +16,6 @@ import {
 
 /** The model and its lines, found from the first stage on with this many workers. */
 async function modelWith(page: Page, workers: number, method: string): Promise<[Buffer, Buffer]> {
-  await page.goto("/");
   await give(page, houseFiles());
   await showFace(page, "Method");
   await page.getByLabel("Workers").selectOption(String(workers));
@@ -33,6 +32,7 @@ async function modelWith(page: Page, workers: number, method: string): Promise<[
 for (const method of ["Lines", "Rectangles"]) {
   test(`three workers find the bytes of one: ${method}`, async ({ page }) => {
     const { problems } = watch(page);
+    await page.goto("/");
     const alone = await modelWith(page, 1, method);
     const shared = await modelWith(page, 3, method);
     expect(shared[0].equals(alone[0])).toBe(true);
