@@ -344,7 +344,7 @@ export function onePage(prepare: (page: Page) => Promise<void>, leave = async ()
 /** What the browser keeps of the page; runs in the page. */
 export function storedKeys(): Promise<IDBValidKey[]> {
   return new Promise((resolve, reject) => {
-    const opening = indexedDB.open("ridgeline", 1);
+    const opening = indexedDB.open("ridgeline");
     opening.onerror = () => reject(opening.error);
     opening.onsuccess = () => {
       const keys = opening.result.transaction("project").objectStore("project").getAllKeys();

@@ -28,7 +28,8 @@ export function Parameters() {
         </summary>
         <p class="muted">
           Where a paper states a value, the default follows it unless another one proved better. A change
-          makes its stage and all later ones outdated; a slider runs them again.
+          makes its stage and all later ones outdated; a slider runs them again. Values that were run before
+          in this visit show their result at once.
         </p>
         {changed > 0 && (
           <button type="button" onClick={resetParams}>

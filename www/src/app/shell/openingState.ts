@@ -5,21 +5,14 @@ import { lineEnds } from "../../kinds/parts/shapes";
 import type { Selection } from "../../shared/selection";
 import type { StageName } from "../../shared/stages";
 import { stageOfTab, tabsOf } from "../../stages/catalogue";
-import { openDemoIn, restoreIn } from "../project/projectActions";
-import {
-  type LockedProject,
-  readStoredProject,
-  readStoredResults,
-  type StoredProject,
-} from "../project/storedProject";
+import { openDemoIn, restoreWithResults } from "../project/projectActions";
+import { type LockedProject, readStoredProject } from "../project/storedProject";
 import type { Turn } from "../session/actionQueue";
 import { actions } from "../session/session";
 import { runStages } from "../session/stageRuns";
-import { showStoredResults } from "../session/storedResults";
-import { opened } from "../settings/addressLink";
+import { linkedParams, opened } from "../settings/addressLink";
 import { dismissOffers, notify } from "../state/notices";
 import { method } from "../state/parameters";
-import { runOptions } from "../state/project";
 import { mainResults, results } from "../state/results";
 import { scene } from "../state/scene";
 import { resumeDetail } from "../state/selectionDetail";
@@ -49,7 +42,7 @@ async function restoreIt(turn: Turn): Promise<void> {
     await openDemoIn(turn, opened.tab === null ? null : stageOfTab(opened.tab));
   } else if (kept !== null && kept.files.length > 0) {
     turn.enter("load", "Reading files");
-    await restoreWithResults(turn, kept);
+    await restoreWithResults(turn, kept, linkedParams());
     const stage = opened.tab === null ? null : stageOfTab(opened.tab);
     if (stage !== null && scene.value !== null && (!isShown(stage) || asksCore(opened.selection))) {
       await runStages(turn, stage);
@@ -78,15 +71,6 @@ async function restoreIt(turn: Turn): Promise<void> {
   }
 }
 
-async function restoreWithResults(turn: Turn, kept: StoredProject): Promise<void> {
-  await restoreIn(turn, kept);
-  const found = await readStoredResults();
-  turn.signal.throwIfAborted();
-  if (found !== null && (scene.value !== null || runOptions.value.tileM !== null)) {
-    showStoredResults(found);
-  }
-}
-
 /** The photographs of the last visit lie in a folder: the browser reads it again when the person says so. */
 function offerLocked(stored: LockedProject): void {
   const name = "Open the folder again";
@@ -103,7 +87,7 @@ function offerLocked(stored: LockedProject): void {
           const kept = await unlocking;
           if (kept !== null) {
             dismissOffers(name);
-            await restoreWithResults(turn, kept);
+            await restoreWithResults(turn, kept, linkedParams());
           }
         });
       },

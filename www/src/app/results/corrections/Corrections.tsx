@@ -7,6 +7,7 @@ import type { Correction, Facet, NotApplied, Vec3 } from "../../../shared/record
 import { counted } from "../../parts/counted";
 import { saveFile } from "../../parts/saveFile";
 import { TextField } from "../../parts/TextField";
+import { redo, undo } from "../../project/projectActions";
 import { isBusy } from "../../state/activity";
 import { notify } from "../../state/notices";
 import { mainResults } from "../../state/results";
@@ -26,7 +27,7 @@ import {
   ringOf,
   sum,
 } from "./facetGeometry";
-import { canRedo, canUndo, change, correct, corrections, redo, remove, undo } from "./history";
+import { canRedo, canUndo, change, correct, corrections, remove } from "./history";
 
 /** What is done with the next facet that is selected. */
 interface Armed {
@@ -498,7 +499,7 @@ async function openCorrections(file: File): Promise<void> {
     });
     return;
   }
-  await change(list, null);
+  await change(list, `${file.name} opened`);
 }
 
 /** A list of things that name their correction; null for anything else. */
