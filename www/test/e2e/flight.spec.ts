@@ -60,9 +60,9 @@ async function state(page: Page, name: string, value: string): Promise<void> {
 /** Opens the fields of region and ground; what was open once is open still. */
 async function openPlace(page: Page): Promise<void> {
   await showProject(page);
-  await page.getByText("Region and ground").waitFor();
+  await page.getByText("Region, ground, reference system").waitFor();
   if (!(await page.getByLabel(/^Tile size/).isVisible())) {
-    await page.getByText("Region and ground").click();
+    await page.getByText("Region, ground, reference system").click();
   }
 }
 

@@ -45,7 +45,7 @@ test("tiles run one after the other into the model of the command line", async (
   await give(page, houseFiles());
   await expect(page.locator(".status.good")).toHaveCount(6);
   await showProject(page);
-  await page.getByText("Region and ground").click();
+  await page.getByText("Region, ground, reference system").click();
   await askFor(page, /Tile size/, "10");
   await expect(page.getByText("60 m or more")).toBeVisible();
   await askFor(page, /Region/, REGION);
@@ -82,7 +82,7 @@ test("a project opens again to the same state, here and on the command line", as
   await page.locator(".view input[type=checkbox]").nth(2).uncheck();
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await showProject(page);
-  await page.getByText("Region and ground").click();
+  await page.getByText("Region, ground, reference system").click();
   await askFor(page, /Height of the ground/, "100");
   await openParameters(page, "Texture");
   await page.locator("#param-texture-padding_px").fill("5");

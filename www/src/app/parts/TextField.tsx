@@ -8,13 +8,23 @@ interface Props {
   placeholder?: string;
   inputMode?: "decimal" | "text";
   isInvalid: boolean;
+  /** What is proposed while something is typed, each with its name. */
+  choices?: readonly (readonly [string, string])[];
   /** Takes what was typed, or rejects it: then it stays to be mended. */
   onTake: (text: string) => boolean;
 }
 
-export function TextField({ id, value, placeholder = "", inputMode = "text", isInvalid, onTake }: Props) {
+export function TextField({
+  id,
+  value,
+  placeholder = "",
+  inputMode = "text",
+  isInvalid,
+  onTake,
+  choices = [],
+}: Props) {
   const [typed, setTyped] = useState<string | null>(null);
-  return (
+  const field = (
     <input
       id={id}
       type="text"
@@ -23,6 +33,7 @@ export function TextField({ id, value, placeholder = "", inputMode = "text", isI
       placeholder={placeholder}
       aria-invalid={isInvalid}
       aria-describedby={`${id}-note`}
+      list={choices.length === 0 ? undefined : `${id}-choices`}
       onInput={(event) => setTyped(event.currentTarget.value)}
       onChange={(event) => {
         if (onTake(event.currentTarget.value)) {
@@ -30,5 +41,17 @@ export function TextField({ id, value, placeholder = "", inputMode = "text", isI
         }
       }}
     />
+  );
+  return choices.length === 0 ? (
+    field
+  ) : (
+    <>
+      {field}
+      <datalist id={`${id}-choices`}>
+        {choices.map(([one, name]) => (
+          <option key={one} value={one} label={name} />
+        ))}
+      </datalist>
+    </>
   );
 }

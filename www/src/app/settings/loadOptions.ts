@@ -1,6 +1,7 @@
 /** What a person asks for beyond the files, as text in fields and as the core takes it. */
 import type { Inspection, LoadOptions, OpenedProject } from "../../shared/records";
 import type { RunOptions } from "../state/project";
+import { systemsNamed } from "./referenceSystems";
 
 /** The core's options; the views are named only where some are left out. */
 export function loadOptions(wanted: RunOptions, inspection: Inspection | null): LoadOptions {
@@ -96,10 +97,17 @@ export function parseHeight(text: string): Parsed<number> {
   return Number.isFinite(Number(trimmed)) ? { value: Number(trimmed) } : { error: "a number in metres" };
 }
 
-/** The code of a reference system; nothing has the files say it. */
+/** The code of a reference system, or words of the name of one; nothing has the files say it. */
 export function parseEpsg(text: string): Parsed<number> {
   const code = /^(?:EPSG:)?(\d{4,6})$/i.exec(text.trim())?.[1];
-  return text.trim() === "" || code !== undefined
-    ? { value: code === undefined ? null : Number(code) }
-    : { error: "a code such as 25832" };
+  if (text.trim() === "" || code !== undefined) {
+    return { value: code === undefined ? null : Number(code) };
+  }
+  const found = systemsNamed(text);
+  const [only] = found;
+  if (found.length === 1 && only !== undefined) {
+    return { value: only.code };
+  }
+  const some = found.slice(0, 4).map(({ code, name }) => `${code} ${name}`);
+  return { error: some.length === 0 ? "a code such as 25832, or a name" : `which of ${some.join("; ")} …` };
 }
