@@ -1,5 +1,7 @@
 /** The frame of the lessons: where one is, and the contents. */
+
 import { LookButtons } from "../app/parts/LookButtons";
+import { spelledOut } from "../app/words/papers";
 import { CONTENTS, lesson, linkTo } from "./address";
 import { LESSONS } from "./catalogue";
 import { LessonView } from "./LessonView";
@@ -54,7 +56,7 @@ function Entry({ lesson: { id, title, aim, minutes, papers, screens } }: { lesso
         <strong>{title}</strong>
         <span>{aim}</span>
         <span class="muted numbers">
-          {minutes} minutes · {papers} ·{" "}
+          {minutes} minutes · {spelledOut(papers)} ·{" "}
           {done === 0 ? `${screens.length} screens` : `${done} of ${screens.length} screens seen`}
         </span>
       </a>

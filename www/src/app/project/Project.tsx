@@ -75,6 +75,9 @@ function Views() {
     const count = counted(files.value.length, "files");
     return <p class="muted">{isBusy.value ? `Reading ${count}…` : `${count}, not read`}</p>;
   }
+  if (report.images.length === 0) {
+    return <p class="muted">No photograph among {counted(files.value.length, "files")}</p>;
+  }
   return (
     <>
       <h3>{countText(report.images)}</h3>

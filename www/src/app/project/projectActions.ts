@@ -411,7 +411,9 @@ async function loadProject(turn: Turn, adopt?: () => Promise<void>): Promise<voi
   }
   // What is missing, and how to come by it, fills the page already.
   const isSaid = hasPhotographsOnly.value && problems.length === 1;
-  for (const notice of isSaid ? [] : refusalNotices(problems)) {
+  // Without a photograph all else follows from that.
+  const told = inspection.value?.images.length === 0 ? problems.slice(0, 1) : problems;
+  for (const notice of isSaid ? [] : refusalNotices(told)) {
     notify(notice);
   }
 }

@@ -1,4 +1,5 @@
 /** For teachers: all exercises with their answers and the mistakes that they know, and a sheet of those that are chosen. */
+import { spelledOut } from "../../app/words/papers";
 import "./page.css";
 import { useState } from "preact/hooks";
 import { counted } from "../../app/parts/counted";
@@ -119,7 +120,8 @@ function Known({ exercise, seed, answer, onAsk, isChosen, onChoose }: KnownProps
           <strong>{title}</strong>
         </label>
         <span class="muted">
-          {LESSONS[lesson]} · {source} · {KIND_WORDS[kind]} · <a href={`./exercises.html#${name}`}>{name}</a>
+          {LESSONS[lesson]} · {spelledOut(source)} · {KIND_WORDS[kind]} ·{" "}
+          <a href={`./exercises.html#${name}`}>{name}</a>
         </span>
       </div>
       <details>
