@@ -1,10 +1,9 @@
 /** Which orientation, which part of the ground, how high it lies. */
 import { signal } from "@preact/signals";
-import { useState } from "preact/hooks";
 import type { OrientationCandidate } from "../../shared/records";
-import { TextField } from "../parts/TextField";
+import { type Parsed, TextField } from "../parts/TextField";
 import { setParam } from "../session/stageRuns";
-import { type Parsed, parseEpsg, parseHeight, parseRegion, parseTile } from "../settings/loadOptions";
+import { parseEpsg, parseHeight, parseRegion, parseTile } from "../settings/loadOptions";
 import { SYSTEMS, systemWords } from "../settings/referenceSystems";
 import { method, params } from "../state/parameters";
 import { inspection, type RunOptions, runOptions } from "../state/project";
@@ -106,38 +105,22 @@ interface FieldProps<K extends keyof RunOptions> {
   placeholder: string;
   of: K;
   parse: (text: string) => Parsed<RunOptions[K]>;
-  /** What stands below the field. */
   hint?: string;
-  /** What is proposed while something is typed, each with its name. */
   choices?: readonly (readonly [string, string])[];
 }
 
-function OptionField<K extends keyof RunOptions>(props: FieldProps<K>) {
-  const { id, label, placeholder, of, parse, hint = "", choices = [] } = props;
+function OptionField<K extends keyof RunOptions>({ label, of, ...field }: FieldProps<K>) {
   const value = runOptions.value[of];
-  const [error, setError] = useState("");
-  const change = (text: string) => {
-    const parsed = parse(text);
-    setError("error" in parsed ? parsed.error : "");
-    if ("value" in parsed) {
-      void setRunOptions({ [of]: parsed.value, ...(of === "tileM" && { isAtOnce: parsed.value === null }) });
-    }
-    return "value" in parsed;
-  };
   return (
     <div class="option">
-      <label for={id}>{label}</label>
+      <label for={field.id}>{label}</label>
       <TextField
-        id={id}
+        {...field}
         value={Array.isArray(value) ? value.join(", ") : String(value ?? "")}
-        placeholder={placeholder}
-        isInvalid={error !== ""}
-        onTake={change}
-        choices={choices}
+        onValue={(next) =>
+          void setRunOptions({ [of]: next, ...(of === "tileM" && { isAtOnce: next === null }) })
+        }
       />
-      <span id={`${id}-note`} class={error === "" ? "muted note" : "error note"}>
-        {error || hint}
-      </span>
     </div>
   );
 }

@@ -6,13 +6,11 @@ import { isBusy } from "../state/activity";
 import { defaults } from "../state/parameters";
 import { files, type ProjectState, presentProject, runOptions } from "../state/project";
 import { askToRead, fileAt, isReadable, placeOf } from "./folders";
+import { storeOf } from "./tiles/database";
 import { forgetKeptTiles } from "./tiles/keptTiles";
 
 /** The projects that are kept, each by its number: files, options and parameters, and results. */
-const DATABASE = "ridgeline";
-const STORE = "project";
-/** Of how the store is laid out; one that is older is emptied. */
-const LAYOUT = 2;
+const request = storeOf("ridgeline", "project", 2);
 /** The number of the project that was open last. */
 const PRESENT = "present";
 type Part = "project" | "files" | "results";
@@ -39,7 +37,6 @@ type StoredFile = { path: string; size: number } & (
 /** A project whose files lie in a folder that the browser reads only when the person allows it again. */
 export interface LockedProject {
   name: string;
-  folder: string;
   /** Asks the person; null where that is declined. Only as the answer to a click. */
   unlock(): Promise<ProjectState | null>;
 }
@@ -65,10 +62,8 @@ export async function readStoredProject(asked?: number): Promise<ProjectState | 
     if (readable.every((is) => is)) {
       return { ...kept, files: await opened(stored) };
     }
-    isLocked = true;
     return {
       name: kept.name,
-      folder: [...folders].map(({ name }) => name).join(", "),
       unlock: async () => {
         const allowed = await Promise.all([...folders].map(askToRead));
         return allowed.every((is) => is) ? { ...kept, files: await opened(stored) } : null;
@@ -78,9 +73,6 @@ export async function readStoredProject(asked?: number): Promise<ProjectState | 
     return null;
   }
 }
-
-/** Until the person has allowed or opened something, nothing of what is kept is replaced. */
-let isLocked = false;
 
 async function opened(stored: readonly StoredFile[]): Promise<InputFile[]> {
   const found = await Promise.all(
@@ -129,6 +121,7 @@ export async function forgetStoredProject(id: number): Promise<void> {
     writtenFiles = null;
     forgotten.add(id);
     await forgetOne(id).catch(() => undefined);
+    await request("readwrite", (store) => store.delete(PRESENT)).catch(() => undefined);
     await forgetKeptTiles();
     written.value = null;
     await listKept();
@@ -209,13 +202,12 @@ let writtenFiles: readonly InputFile[] | null = null;
 async function write(_: number, { files: all, ...project }: ProjectState): Promise<void> {
   try {
     if (all.length === 0) {
-      // What the person has not yet allowed to be read is asked for again in the next visit.
-      if (!isLocked) {
+      // At the beginning of a visit nothing has been closed.
+      if (writtenFiles !== null) {
         await request("readwrite", (store) => store.delete(PRESENT));
       }
       return;
     }
-    isLocked = false;
     forgotten.delete(project.id);
     if (writtenFiles !== all) {
       await request("readwrite", (store) => store.put(all.map(storedFile), keyOf(project.id, "files")));
@@ -238,31 +230,4 @@ async function write(_: number, { files: all, ...project }: ProjectState): Promi
 
 async function read<T>(key: IDBValidKey): Promise<T | undefined> {
   return request<T | undefined>("readonly", (store) => store.get(key));
-}
-
-function request<T>(mode: IDBTransactionMode, act: (store: IDBObjectStore) => IDBRequest): Promise<T> {
-  return new Promise((resolve, reject) => {
-    const opening = indexedDB.open(DATABASE, LAYOUT);
-    opening.onupgradeneeded = ({ oldVersion }) => {
-      if (oldVersion > 0) {
-        opening.result.deleteObjectStore(STORE);
-      }
-      opening.result.createObjectStore(STORE);
-    };
-    opening.onerror = () => reject(opening.error);
-    opening.onsuccess = () => {
-      const database = opening.result;
-      const transaction = database.transaction(STORE, mode);
-      const acting = act(transaction.objectStore(STORE));
-      transaction.oncomplete = () => {
-        database.close();
-        resolve(acting.result as T);
-      };
-      transaction.onerror = () => {
-        database.close();
-        reject(transaction.error);
-      };
-      transaction.onabort = transaction.onerror;
-    };
-  });
 }

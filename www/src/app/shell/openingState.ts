@@ -6,12 +6,11 @@ import type { Selection } from "../../shared/selection";
 import type { StageName } from "../../shared/stages";
 import { stageOfTab, tabsOf } from "../../stages/catalogue";
 import { openDemoIn, restoreWithResults } from "../project/projectActions";
-import { type LockedProject, readStoredProject } from "../project/storedProject";
+import { readStoredProject } from "../project/storedProject";
 import type { Turn } from "../session/actionQueue";
 import { actions } from "../session/session";
 import { runStages } from "../session/stageRuns";
 import { linkedParams, opened } from "../settings/addressLink";
-import { dismissOffers, notify } from "../state/notices";
 import { method } from "../state/parameters";
 import { mainResults, results } from "../state/results";
 import { scene } from "../state/scene";
@@ -33,9 +32,7 @@ export async function restoreOpeningState(): Promise<void> {
 async function restoreIt(turn: Turn): Promise<void> {
   const stored = await readStoredProject();
   turn.signal.throwIfAborted();
-  if (stored !== null && "unlock" in stored) {
-    offerLocked(stored);
-  }
+  // One whose folder the browser asks about is opened at the entrance.
   const kept = stored !== null && "files" in stored ? stored : null;
   // A link to the demo scene means it as it was published; a reload, as it was left.
   if (opened.scene === "demo" && !(kept?.isDemo === true && isReload())) {
@@ -69,30 +66,6 @@ async function restoreIt(turn: Turn): Promise<void> {
   if (opened.tourStep !== null && results.value.glb !== null) {
     await goToIn(turn, opened.tourStep);
   }
-}
-
-/** The photographs of the last visit lie in a folder: the browser reads it again when the person says so. */
-function offerLocked(stored: LockedProject): void {
-  const name = "Open the folder again";
-  notify({
-    severity: "info",
-    title: `The last project lies in the folder ${stored.folder}`,
-    text: "The browser asks before the page reads it again. Tiles that are done are kept.",
-    action: {
-      name,
-      run: () => {
-        const unlocking = stored.unlock();
-        const words = "Reading files";
-        void actions.perform({ kind: "open", name: "folder", phase: "load", words }, async (turn) => {
-          const kept = await unlocking;
-          if (kept !== null) {
-            dismissOffers(name);
-            await restoreWithResults(turn, kept, linkedParams());
-          }
-        });
-      },
-    },
-  });
 }
 
 function isReload(): boolean {
