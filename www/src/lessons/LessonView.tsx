@@ -45,6 +45,7 @@ export function LessonView({ lesson }: { lesson: Lesson }) {
           <span class="muted">{number}</span> {title}
         </h1>
         <span class="muted">{spelledOut(papers)}</span>
+        <a href={`./exercises.html#${id}`}>Its exercises</a>
         <button
           type="button"
           class="quiet handout-button"

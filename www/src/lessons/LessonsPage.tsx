@@ -1,8 +1,8 @@
 /** The frame of the lessons: where one is, and the contents. */
 
-import { LookButtons } from "../app/parts/LookButtons";
 import { spelledOut } from "../app/words/papers";
-import { CONTENTS, lesson, linkTo } from "./address";
+import { TeachingHead } from "../app/words/TeachingHead";
+import { lesson, linkTo } from "./address";
 import { LESSONS } from "./catalogue";
 import { LessonView } from "./LessonView";
 import type { Lesson } from "./parts/lesson";
@@ -13,17 +13,7 @@ export function LessonsPage() {
   const now = lesson.value;
   return (
     <div class="lessons">
-      <header class="lessons-head">
-        <a class="home" href="./">
-          <img src="./icon.svg" alt="" width="22" height="22" />
-          ridgeline
-        </a>
-        <a href={CONTENTS} aria-current={now === null ? "page" : undefined}>
-          Lessons
-        </a>
-        <span class="grow" />
-        <LookButtons />
-      </header>
+      <TeachingHead now={now === null ? "Lessons" : null} />
       <main>{now === null ? <Contents /> : <LessonView key={now.id} lesson={now} />}</main>
     </div>
   );

@@ -195,7 +195,7 @@ test("on paper: the whole lesson, without controls", async ({ page }) => {
   await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
   await page.emulateMedia({ media: "print" });
   await expect(page.locator(".screen")).toHaveCount(6);
-  await expect(page.locator(".lessons-head")).toBeHidden();
+  await expect(page.locator(".teaching-head")).toBeHidden();
   await expect(page.locator(".handout-button")).toBeHidden();
   await page.emulateMedia({ media: "screen" });
   await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));

@@ -83,7 +83,7 @@ export function PlaceFields() {
       />
       <OptionField id="tile" label="Tile size (m)" placeholder="no tiles" of="tileM" parse={parseTile} />
       {method.value !== "rectangles" && (
-        <label class="option">
+        <label class="option-check">
           <input type="checkbox" checked={isAdjusted()} onChange={() => setParam(ADJUSTED, !isAdjusted())} />
           Adjust small errors of single views
         </label>

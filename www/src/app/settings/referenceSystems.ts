@@ -1,4 +1,5 @@
 /** Reference systems by name, and whether coordinates have the size that theirs have. */
+import { grouped } from "../parts/numberText";
 
 interface System {
   code: number;
@@ -103,7 +104,7 @@ export function systemWords(
   if (place === undefined || (!outside(east, place[0]) && !outside(north, place[1]))) {
     return name;
   }
-  const range = ([low, high]: readonly [number, number]) => `${low} to ${high}`;
-  const at = `${place[0].toFixed(0)}, ${place[1].toFixed(0)}`;
+  const range = ([low, high]: readonly [number, number]) => `${grouped(low)} to ${grouped(high)}`;
+  const at = `${grouped(Math.round(place[0]))} and ${grouped(Math.round(place[1]))}`;
   return `${name}: its eastings are ${range(east)} and its northings ${range(north)}, but the scene lies at ${at}. Is it another system?`;
 }
