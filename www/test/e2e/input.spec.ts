@@ -8,6 +8,7 @@ import {
   houseFiles,
   housePmatrix,
   openDemo,
+  openHouse,
   runButton,
   runUpTo,
   showProject,
@@ -298,9 +299,7 @@ test("the orientation, the views and the region can be chosen", async ({ page })
 });
 
 test("what is being typed stays while the page is drawn anew", async ({ page }) => {
-  await page.goto("/");
-  await give(page, houseFiles());
-  await expect(page.locator(".status.good")).toHaveCount(6);
+  await openHouse(page);
   await showProject(page);
   await page.getByText("Region, ground, reference system").click();
   const height = page.getByLabel(/Height of the ground/);

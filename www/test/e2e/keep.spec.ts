@@ -5,7 +5,9 @@ import {
   give,
   houseFiles,
   openDemo,
+  openHouse,
   openParameters,
+  reconstructHouse,
   runButton,
   runUpTo,
   showFace,
@@ -44,10 +46,7 @@ test("what was removed comes back on request", async ({ page }) => {
 test("another method, a file and the example take nothing away", async ({ page }) => {
   test.slow();
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await runButton(page).click();
-  await waitForStage(page, "model");
+  await reconstructHouse(page);
   const found = await stage(page, "lines").textContent();
 
   await test.step("a method keeps what it found", async () => {
@@ -88,9 +87,7 @@ test("another method, a file and the example take nothing away", async ({ page }
 
 test("a reload keeps the project until it is deleted", async ({ page }) => {
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await expect(page.locator(".status.good")).toHaveCount(6);
+  await openHouse(page);
   await page.locator(".view input[type=checkbox]").nth(2).uncheck();
   await openParameters(page, "Texture");
   const field = page.locator("#param-texture-padding_px");

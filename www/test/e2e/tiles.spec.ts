@@ -9,6 +9,7 @@ import {
   give,
   houseFiles,
   MAY_SKIP,
+  openHouse,
   openParameters,
   output,
   runButton,
@@ -41,9 +42,7 @@ async function askFor(page: Page, label: RegExp, value: string): Promise<void> {
 test("tiles run one after the other into the model of the command line", async ({ page }) => {
   test.setTimeout(400_000);
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await expect(page.locator(".status.good")).toHaveCount(6);
+  await openHouse(page);
   await showProject(page);
   await page.getByText("Region, ground, reference system").click();
   await askFor(page, /Tile size/, "10");
@@ -76,9 +75,7 @@ test("tiles run one after the other into the model of the command line", async (
 test("a project opens again to the same state, here and on the command line", async ({ page }) => {
   test.setTimeout(300_000);
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await expect(page.locator(".status.good")).toHaveCount(6);
+  await openHouse(page);
   await page.locator(".view input[type=checkbox]").nth(2).uncheck();
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await showProject(page);
