@@ -1,5 +1,7 @@
 /** One lesson: its screens one after the other, and the way between them. */
+
 import { useEffect, useRef } from "preact/hooks";
+import { spelledOut } from "../app/words/papers";
 import { CONTENTS, goTo, linkTo, screenIndex } from "./address";
 import { LESSONS } from "./catalogue";
 import { isHandout, toggleHandout } from "./handout";
@@ -42,7 +44,8 @@ export function LessonView({ lesson }: { lesson: Lesson }) {
         <h1>
           <span class="muted">{number}</span> {title}
         </h1>
-        <span class="muted">{papers}</span>
+        <span class="muted">{spelledOut(papers)}</span>
+        <a href={`./exercises.html#${id}`}>Its exercises</a>
         <button
           type="button"
           class="quiet handout-button"

@@ -1,6 +1,8 @@
 /** The frame of the lessons: where one is, and the contents. */
-import { LookButtons } from "../app/parts/LookButtons";
-import { CONTENTS, lesson, linkTo } from "./address";
+
+import { spelledOut } from "../app/words/papers";
+import { TeachingHead } from "../app/words/TeachingHead";
+import { lesson, linkTo } from "./address";
 import { LESSONS } from "./catalogue";
 import { LessonView } from "./LessonView";
 import type { Lesson } from "./parts/lesson";
@@ -11,17 +13,7 @@ export function LessonsPage() {
   const now = lesson.value;
   return (
     <div class="lessons">
-      <header class="lessons-head">
-        <a class="home" href="./">
-          <img src="./icon.svg" alt="" width="22" height="22" />
-          ridgeline
-        </a>
-        <a href={CONTENTS} aria-current={now === null ? "page" : undefined}>
-          Lessons
-        </a>
-        <span class="grow" />
-        <LookButtons />
-      </header>
+      <TeachingHead now={now === null ? "Lessons" : null} />
       <main>{now === null ? <Contents /> : <LessonView key={now.id} lesson={now} />}</main>
     </div>
   );
@@ -54,7 +46,7 @@ function Entry({ lesson: { id, title, aim, minutes, papers, screens } }: { lesso
         <strong>{title}</strong>
         <span>{aim}</span>
         <span class="muted numbers">
-          {minutes} minutes · {papers} ·{" "}
+          {minutes} minutes · {spelledOut(papers)} ·{" "}
           {done === 0 ? `${screens.length} screens` : `${done} of ${screens.length} screens seen`}
         </span>
       </a>

@@ -8,12 +8,12 @@ export const METHOD_WORDS: Readonly<Record<Method, { title: string; what: string
   lines: {
     title: "Lines",
     what: "Lines matched over the views, and half-planes at them (Baillard et al. 1999)",
-    legend: "Lines (B99)",
+    legend: "Lines (Baillard et al. 1999)",
   },
   rectangles: {
     title: "Rectangles",
     what: "Regions, and planes between parallel lines in object space (Wiman, Axelsson 1996)",
-    legend: "Rectangles (W96)",
+    legend: "Rectangles (Wiman, Axelsson 1996)",
   },
   combined: {
     title: "Combined",
@@ -23,12 +23,12 @@ export const METHOD_WORDS: Readonly<Record<Method, { title: string; what: string
   coplanar: {
     title: "Coplanar",
     what: "Sets of coplanar lines and their polygons (Baillard et al. 1999, section 2)",
-    legend: "Coplanar lines (B99 2)",
+    legend: "Coplanar lines (Baillard et al. 1999)",
   },
   adjacency: {
     title: "Adjacency",
     what: "Corners with their edges and regions, matched as wholes (Baillard et al. 1999, section 2)",
-    legend: "Corners (B99 2)",
+    legend: "Corners (Baillard et al. 1999)",
   },
 };
 

@@ -27,7 +27,7 @@ import { type LayerRoles, OF_BOTH_HALVES } from "./scene/layerRoles";
 import { clipFromViewer } from "./scene/photoProjection";
 import { clipPlace, drawHalves } from "./scene/splitView";
 import { buildHandles, dragged, handleAt } from "./tools/handles";
-import { buildMeasure, type Measured, measure } from "./tools/measure";
+import { buildMeasure, type Corner, type Measured, measure, snapped, type Taken } from "./tools/measure";
 import { PressWatch } from "./tools/press";
 import { clippingPlane, type Section, sectionOf } from "./tools/section";
 
@@ -63,7 +63,9 @@ export class Viewer {
   #left: ReadonlySet<string> | null = null;
   /** The points that were clicked for a tool; null while clicks pick. */
   #points: Vector3[] | null = null;
-  #onPoint: (points: Vector3[]) => void = () => undefined;
+  #onPoint: (points: Vector3[], last: Taken) => void = () => undefined;
+  /** Of the facets, by their corners: points are drawn to them. */
+  #rings: readonly (readonly Corner[])[] = [];
   /** Dots that can be dragged, and the one that is being dragged. */
   #handles: readonly Vector3[] = [];
   #onDrop: (index: number, to: Vec3) => void = () => undefined;
@@ -256,9 +258,13 @@ export class Viewer {
     this.draw();
   }
 
-  /** From now on clicks measure, until it is called with null. */
-  measure(onMeasure: ((measured: Measured) => void) | null): void {
-    this.#collect(onMeasure && ((points) => onMeasure(measure(points))));
+  /** From now on clicks measure, drawn to the corners and edges of these rings, until it is called with null. */
+  measure(
+    onMeasure: ((measured: Measured, last: Taken) => void) | null,
+    rings: readonly (readonly Corner[])[] = [],
+  ): void {
+    this.#collect(onMeasure && ((points, last) => onMeasure(measure(points), last)));
+    this.#rings = rings;
   }
 
   /** From now on every second click makes a vertical cut, until it is called with null. */
@@ -342,7 +348,8 @@ export class Viewer {
     this.draw();
   }
 
-  #collect(onPoint: ((points: Vector3[]) => void) | null): void {
+  #collect(onPoint: ((points: Vector3[], last: Taken) => void) | null): void {
+    this.#rings = [];
     this.#points = onPoint === null ? null : [];
     this.#onPoint = onPoint ?? (() => undefined);
     this.setLayer("measure", null);
@@ -493,10 +500,16 @@ export class Viewer {
     const [hit] = hits.sort((a, b) => a.distance - b.distance);
     const floor = new Plane(new Vector3(0, 1, 0), -this.#floor());
     // On a line of constant width the hit lies beside it.
-    const point = hit?.pointOnLine ?? hit?.point ?? caster.ray.intersectPlane(floor, new Vector3());
-    if (point !== null && point !== undefined) {
-      points.push(point.clone());
-      this.#onPoint(points);
+    const seen = hit?.pointOnLine ?? hit?.point ?? null;
+    const point = seen ?? caster.ray.intersectPlane(floor, new Vector3());
+    const { clientWidth, clientHeight: height } = this.#renderer.domElement;
+    const size = { width: this.#left === null ? clientWidth : clientWidth / 2, height };
+    const place = { at, ray: caster.ray, camera: this.#camera, size };
+    const plain: Taken | null = point && { at: point, on: seen === null ? "ground" : "face", sigma: null };
+    const last = snapped(place, this.#rings, seen) ?? plain;
+    if (last !== null) {
+      points.push(last.at.clone());
+      this.#onPoint(points, last);
       this.setLayer("measure", buildMeasure(points));
     }
   }

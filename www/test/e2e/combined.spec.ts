@@ -2,9 +2,8 @@
 import { expect, test } from "@playwright/test";
 import {
   chooseMethod,
-  give,
-  houseFiles,
   lookOf,
+  openHouse,
   openParameters,
   openTab,
   runButton,
@@ -18,9 +17,7 @@ import {
 test("both methods find one model of a house, and each view tells of its own stages", async ({ page }) => {
   test.slow();
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await expect(page.locator(".status.good")).toHaveCount(6);
+  await openHouse(page);
   await chooseMethod(page, "Combined");
   await expect(tabOf(page, "Clusters")).toBeVisible();
   await expect(tabOf(page, "Half-planes")).toBeVisible();

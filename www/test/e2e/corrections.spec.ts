@@ -1,7 +1,7 @@
 /** Mistakes planted in a model, and corrected with a few clicks. */
 import { readFileSync } from "node:fs";
 import { expect, type Page, test } from "@playwright/test";
-import { give, houseFiles, runButton, save, upload, waitForStage, watch } from "./helpers";
+import { houseFiles, reconstructHouse, save, upload, waitForStage, watch } from "./helpers";
 
 interface RoofFace {
   slopeDeg: number;
@@ -156,10 +156,7 @@ async function pick(page: Page, x: number, y: number): Promise<void> {
 test("a false facet, a wrong slope and a missing facet are corrected with a few clicks", async ({ page }) => {
   test.slow();
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await runButton(page).click();
-  await waitForStage(page, "model");
+  await reconstructHouse(page);
   const truth = await roofOf(page);
   const panel = page.getByTestId("corrections");
   await page.getByRole("button", { name: "Correct", exact: true }).click();
@@ -248,10 +245,7 @@ test("a false facet, a wrong slope and a missing facet are corrected with a few 
 test("facets are deleted and made symmetric, and corners dragged, in the 3D view", async ({ page }) => {
   test.slow();
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await runButton(page).click();
-  await waitForStage(page, "model");
+  await reconstructHouse(page);
   const truth = await roofOf(page);
   const origin: Place = JSON.parse((await save(page, "report.json")).toString()).origin;
   const panel = page.getByTestId("corrections");
@@ -400,10 +394,7 @@ function pixelOf(view: string, place: Place): { x: number; y: number } {
 test("a missing ridge is drawn by two clicks in one photograph", async ({ page }) => {
   test.slow();
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await runButton(page).click();
-  await waitForStage(page, "model");
+  await reconstructHouse(page);
   const truth = await roofOf(page);
   const panel = page.getByTestId("corrections");
   await page.getByRole("button", { name: "Correct", exact: true }).click();

@@ -1,6 +1,6 @@
 /** The two faces of the page: the model has most of the window at every size, and nothing pushes it. */
 import { expect, type Page, test } from "@playwright/test";
-import { axeFindings, give, houseFiles, runButton, save, showFace, waitForStage, watch } from "./helpers";
+import { axeFindings, give, houseFiles, reconstructHouse, save, showFace, watch } from "./helpers";
 
 /** CSS pixels: phone, tablet, laptops, projector; 1920 x 1080 at 200 % and at 400 % zoom. */
 const SIZES = [
@@ -36,10 +36,7 @@ function shareOf(page: Page): Promise<number> {
 const boxOf = (page: Page) => page.getByTestId("viewer").boundingBox();
 
 async function openModel(page: Page): Promise<void> {
-  await page.goto("/");
-  await give(page, houseFiles());
-  await runButton(page).click();
-  await waitForStage(page, "model");
+  await reconstructHouse(page);
   await expect(page.getByTestId("buildings")).toContainText("1 building");
 }
 
@@ -99,10 +96,7 @@ test("where there is no room beside the model, its buildings lie over it when as
   page,
 }) => {
   await page.setViewportSize({ width: 360, height: 740 });
-  await page.goto("/");
-  await give(page, houseFiles());
-  await runButton(page).click();
-  await waitForStage(page, "model");
+  await reconstructHouse(page);
   await expect(page.getByTestId("buildings")).toBeHidden();
   await page.getByRole("button", { name: "Buildings", exact: true }).click();
   await expect(page.getByTestId("buildings")).toContainText("1 building");

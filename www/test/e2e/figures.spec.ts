@@ -345,7 +345,7 @@ test("the viewer: normals, cameras, measuring, a picture, and a view's own camer
   const normals = await lookOf(page, viewer);
   await switchLayer(page, "By method");
   await expect(page.getByTestId("method-legend")).toHaveText(
-    `Lines (B99): ${facets} facetsRectangles (W96): 0 facets`,
+    `Lines (Baillard et al. 1999): ${facets} facetsRectangles (Wiman, Axelsson 1996): 0 facets`,
   );
   await expect(async () => {
     expect(await lookOf(page, viewer)).not.toEqual(normals);
@@ -354,7 +354,7 @@ test("the viewer: normals, cameras, measuring, a picture, and a view's own camer
   await page.getByRole("button", { name: "Measure" }).click();
   const reading = page.getByTestId("reading");
   const box = await viewer.boundingBox();
-  for (let i = 0; i < 80 && !(await reading.isVisible()); i += 1) {
+  for (let i = 0; i < 80 && !(await reading.getByText("Slope").isVisible()); i += 1) {
     const x = (box?.width ?? 0) * (0.3 + 0.045 * (i % 10));
     const y = (box?.height ?? 0) * (0.3 + 0.07 * Math.floor(i / 10));
     await viewer.click({ position: { x, y } });

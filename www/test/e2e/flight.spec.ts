@@ -60,9 +60,9 @@ async function state(page: Page, name: string, value: string): Promise<void> {
 /** Opens the fields of region and ground; what was open once is open still. */
 async function openPlace(page: Page): Promise<void> {
   await showProject(page);
-  await page.getByText("Region and ground").waitFor();
+  await page.getByText("Region, ground, reference system").waitFor();
   if (!(await page.getByLabel(/^Tile size/).isVisible())) {
-    await page.getByText("Region and ground").click();
+    await page.getByText("Region, ground, reference system").click();
   }
 }
 
@@ -259,7 +259,7 @@ test("a folder is read again after a reload, and not copied", async ({ page }) =
   // A browser that asks again.
   await page.evaluate(() => sessionStorage.setItem("asks", "yes"));
   await page.reload();
-  await page.getByRole("button", { name: "Open the folder again" }).click();
+  await page.getByRole("region", { name: "Your last projects" }).getByText("flight").click();
   await expect(page.locator(".status.good")).toHaveCount(6);
   await expect(page.getByRole("alert")).toHaveCount(0);
   expect(problems).toEqual([]);

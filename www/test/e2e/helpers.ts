@@ -101,6 +101,20 @@ export async function give(page: Page, files: Upload[]): Promise<void> {
   await page.getByTestId("file-input").setInputFiles(files);
 }
 
+/** The house is open, all of its views oriented. */
+export async function openHouse(page: Page): Promise<void> {
+  await page.goto("/");
+  await give(page, houseFiles());
+  await expect(page.locator(".status.good")).toHaveCount(6);
+}
+
+/** The house has its model. */
+export async function reconstructHouse(page: Page): Promise<void> {
+  await openHouse(page);
+  await runButton(page).click();
+  await waitForStage(page, "model");
+}
+
 /** Turns to a face of the page, unless it is there. */
 export async function showFace(page: Page, name: "Result" | "Method"): Promise<void> {
   const button = page.getByRole("group", { name: "Face" }).getByRole("button", { name });
@@ -344,7 +358,7 @@ export function onePage(prepare: (page: Page) => Promise<void>, leave = async ()
 /** What the browser keeps of the page; runs in the page. */
 export function storedKeys(): Promise<IDBValidKey[]> {
   return new Promise((resolve, reject) => {
-    const opening = indexedDB.open("ridgeline", 1);
+    const opening = indexedDB.open("ridgeline");
     opening.onerror = () => reject(opening.error);
     opening.onsuccess = () => {
       const keys = opening.result.transaction("project").objectStore("project").getAllKeys();

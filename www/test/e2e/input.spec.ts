@@ -8,6 +8,7 @@ import {
   houseFiles,
   housePmatrix,
   openDemo,
+  openHouse,
   runButton,
   runUpTo,
   showProject,
@@ -283,7 +284,7 @@ test("the orientation, the views and the region can be chosen", async ({ page })
   await expect(page.getByRole("group", { name: "View" }).getByRole("button")).toHaveCount(6);
 
   await showProject(page);
-  await page.getByText("Region and ground").click();
+  await page.getByText("Region, ground, reference system").click();
   await page.getByLabel(/Region/).fill("1, 2, 3");
   await page.getByLabel(/Region/).press("Enter");
   await expect(page.getByText("four numbers")).toBeVisible();
@@ -298,11 +299,9 @@ test("the orientation, the views and the region can be chosen", async ({ page })
 });
 
 test("what is being typed stays while the page is drawn anew", async ({ page }) => {
-  await page.goto("/");
-  await give(page, houseFiles());
-  await expect(page.locator(".status.good")).toHaveCount(6);
+  await openHouse(page);
   await showProject(page);
-  await page.getByText("Region and ground").click();
+  await page.getByText("Region, ground, reference system").click();
   const height = page.getByLabel(/Height of the ground/);
   await height.fill("99999");
   await give(page, [upload("notes.txt", Buffer.from("of the flight"))]);
@@ -322,7 +321,7 @@ test("what is too large is loaded by a region of it", async ({ page }) => {
     await page.getByLabel(label).press("Enter");
   };
   await showProject(page);
-  await page.getByText("Region and ground").click();
+  await page.getByText("Region, ground, reference system").click();
   await ask(/Height of the ground/, "0");
   await expect(page.getByRole("alert")).toContainText("MB of memory");
   await ask(/Region/, "5000, 0, 5040, 40");

@@ -5,7 +5,9 @@ import {
   give,
   houseFiles,
   openDemo,
+  openHouse,
   openParameters,
+  reconstructHouse,
   runButton,
   runUpTo,
   showFace,
@@ -44,10 +46,7 @@ test("what was removed comes back on request", async ({ page }) => {
 test("another method, a file and the example take nothing away", async ({ page }) => {
   test.slow();
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await runButton(page).click();
-  await waitForStage(page, "model");
+  await reconstructHouse(page);
   const found = await stage(page, "lines").textContent();
 
   await test.step("a method keeps what it found", async () => {
@@ -88,9 +87,7 @@ test("another method, a file and the example take nothing away", async ({ page }
 
 test("a reload keeps the project until it is deleted", async ({ page }) => {
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await expect(page.locator(".status.good")).toHaveCount(6);
+  await openHouse(page);
   await page.locator(".view input[type=checkbox]").nth(2).uncheck();
   await openParameters(page, "Texture");
   const field = page.locator("#param-texture-padding_px");
@@ -107,6 +104,24 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
   await runUpTo(page, "Segments");
   await waitForStage(page, "segments");
 
+  await test.step("one that was closed is listed at the entrance", async () => {
+    await showProject(page);
+    await page.getByRole("button", { name: "New project" }).click();
+    await page.waitForTimeout(600);
+    await page.reload();
+    await page.getByRole("region", { name: "Your last projects" }).getByText("Own files").click();
+    await showProject(page);
+    await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
+    await expect(stage(page, "segments")).toHaveAttribute("data-status", "done");
+  });
+
+  await showProject(page, false);
+  await page.locator("#param-texture-padding_px").fill("6");
+  await page.locator("#param-texture-padding_px").press("Enter");
+  await page.getByRole("button", { name: "Steps" }).click();
+  await page.getByRole("button", { name: "Undo", exact: true }).click();
+  await expect(page.locator("#param-texture-padding_px")).toHaveValue("5");
+  await page.keyboard.press("Escape");
   await showProject(page);
   await page.getByTestId("kept").getByRole("button", { name: "Delete" }).click();
   await expect(page.getByTestId("entrance")).toBeVisible();

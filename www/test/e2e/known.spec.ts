@@ -2,7 +2,7 @@
 import { expect, test } from "@playwright/test";
 import {
   give,
-  houseFiles,
+  openHouse,
   openTab,
   runButton,
   save,
@@ -49,9 +49,7 @@ test("terrain and footprints are listed, compared with the images, and left out 
 }) => {
   test.slow();
   const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await expect(page.locator(".status.good")).toHaveCount(6);
+  await openHouse(page);
   await expect(page.getByTestId("known-files")).toHaveCount(0);
   await runButton(page).click();
   await waitForStage(page, "model");

@@ -1,7 +1,7 @@
 /** The ten lessons: every screen, guessed and revealed, in any size and theme, and real figures on one's own scene. */
 import { expect, type Page, test } from "@playwright/test";
 import axe from "axe-core";
-import { give, houseFiles } from "./helpers";
+import { houseFiles, openHouse } from "./helpers";
 
 test.describe.configure({ mode: "serial" });
 
@@ -149,9 +149,7 @@ test("the project of the page is the scene of the lessons, and they open offline
   page,
   context,
 }) => {
-  await page.goto("/");
-  await give(page, houseFiles());
-  await expect(page.locator(".status.good")).toHaveCount(6);
+  await openHouse(page);
   await page.getByRole("link", { name: "Lessons" }).waitFor();
   // It is written a moment after the last change; then the worker of the site has what it serves.
   await page.waitForTimeout(1500);
@@ -195,7 +193,7 @@ test("on paper: the whole lesson, without controls", async ({ page }) => {
   await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
   await page.emulateMedia({ media: "print" });
   await expect(page.locator(".screen")).toHaveCount(6);
-  await expect(page.locator(".lessons-head")).toBeHidden();
+  await expect(page.locator(".teaching-head")).toBeHidden();
   await expect(page.locator(".handout-button")).toBeHidden();
   await page.emulateMedia({ media: "screen" });
   await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));

@@ -1,6 +1,6 @@
 /** The parameters of every stage, from the core's own defaults; what differs from them is marked. */
 import "./project.css";
-import { useState } from "preact/hooks";
+import type { ParamValue } from "../../shared/paramTree";
 import { TextField } from "../parts/TextField";
 import { dragParam, dropParam } from "../session/draggedParam";
 import { resetParams, setParam } from "../session/stageRuns";
@@ -28,7 +28,8 @@ export function Parameters() {
         </summary>
         <p class="muted">
           Where a paper states a value, the default follows it unless another one proved better. A change
-          makes its stage and all later ones outdated; a slider runs them again.
+          makes its stage and all later ones outdated; a slider runs them again. Values that were run before
+          in this visit show their result at once.
         </p>
         {changed > 0 && (
           <button type="button" onClick={resetParams}>
@@ -63,16 +64,11 @@ function Section({ section }: { section: ParamSection }) {
 }
 
 function Field({ path, field, place }: { path: string; field: ParamField; place: "wanted" | "param" }) {
-  const [error, setError] = useState("");
   const id = `${place}-${path.replaceAll(".", "-")}-${field.key}`;
-  const change = (text: string) => {
-    const parsed = parseField(field, text);
-    setError("error" in parsed ? parsed.error : "");
-    if ("value" in parsed) {
-      setParam(`${path}.${field.key}`, parsed.value);
-    }
-    return "value" in parsed;
-  };
+  const parse = (text: string) => parseField(field, text);
+  const take = (value: ParamValue) => setParam(`${path}.${field.key}`, value);
+  const hint = field.changed ? `default ${fieldText(field.fallback)}` : "";
+  const unit = <span class="unit muted">{field.unit}</span>;
   return (
     <div class={`field ${field.changed ? "changed" : ""}`}>
       <label for={id} title={`${path}.${field.key}`}>
@@ -83,14 +79,15 @@ function Field({ path, field, place }: { path: string; field: ParamField; place:
           id={id}
           type="checkbox"
           checked={field.value === true}
-          onChange={(event) => change(String(event.currentTarget.checked))}
+          aria-describedby={`${id}-note`}
+          onChange={(event) => take(event.currentTarget.checked)}
         />
       ) : field.kind === "choice" ? (
         <select
           id={id}
           value={fieldText(field.value)}
           aria-describedby={`${id}-note`}
-          onChange={(event) => change(event.currentTarget.value)}
+          onChange={(event) => take(event.currentTarget.value)}
         >
           {field.choices.map((choice) => (
             <option key={choice}>{choice}</option>
@@ -101,17 +98,24 @@ function Field({ path, field, place }: { path: string; field: ParamField; place:
           id={id}
           inputMode={field.kind === "number" ? "decimal" : "text"}
           value={fieldText(field.value)}
-          isInvalid={error !== ""}
-          onTake={change}
-        />
+          parse={parse}
+          onValue={take}
+          hint={hint}
+        >
+          {unit}
+          {place === "wanted" && field.kind === "number" && (
+            <Slider path={`${path}.${field.key}`} field={field} />
+          )}
+        </TextField>
       )}
-      <span class="unit muted">{field.unit}</span>
-      {place === "wanted" && field.kind === "number" && (
-        <Slider path={`${path}.${field.key}`} field={field} />
+      {(field.kind === "boolean" || field.kind === "choice") && (
+        <>
+          {unit}
+          <span id={`${id}-note`} class="muted note">
+            {hint}
+          </span>
+        </>
       )}
-      <span id={`${id}-note`} class={error === "" ? "muted note" : "error note"}>
-        {error || (field.changed ? `default ${fieldText(field.fallback)}` : "")}
-      </span>
     </div>
   );
 }

@@ -11,7 +11,7 @@ import { ArrivalHabit } from "./ArrivalQuestion";
 import { useFilePicker } from "./filePicker";
 import { baseName } from "./inputFiles";
 import { OrientationCheck } from "./OrientationCheck";
-import { clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
+import { clearProject, deleteProject, openDemo, removeFile, setRunOptions } from "./projectActions";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
 import { storedBytes } from "./storedProject";
 import { Thumbnail } from "./Thumbnail";
@@ -74,6 +74,9 @@ function Views() {
   if (report === null) {
     const count = counted(files.value.length, "files");
     return <p class="muted">{isBusy.value ? `Reading ${count}…` : `${count}, not read`}</p>;
+  }
+  if (report.images.length === 0) {
+    return <p class="muted">No photograph among {counted(files.value.length, "files")}</p>;
   }
   return (
     <>
@@ -186,7 +189,7 @@ function KeptNote() {
   return (
     <p class="kept muted" data-testid="kept">
       <span>Kept in this browser: {(bytes / 1e6).toFixed(1)} MB</span>
-      <button type="button" class="quiet" onClick={() => void clearProject()}>
+      <button type="button" class="quiet" onClick={() => void deleteProject()}>
         Delete
       </button>
     </p>

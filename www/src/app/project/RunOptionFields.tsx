@@ -1,12 +1,13 @@
 /** Which orientation, which part of the ground, how high it lies. */
 import { signal } from "@preact/signals";
-import { useState } from "preact/hooks";
 import type { OrientationCandidate } from "../../shared/records";
-import { TextField } from "../parts/TextField";
+import { type Parsed, TextField } from "../parts/TextField";
 import { setParam } from "../session/stageRuns";
-import { type Parsed, parseEpsg, parseHeight, parseRegion, parseTile } from "../settings/loadOptions";
+import { parseEpsg, parseHeight, parseRegion, parseTile } from "../settings/loadOptions";
+import { SYSTEMS, systemWords } from "../settings/referenceSystems";
 import { method, params } from "../state/parameters";
-import { inspection, runOptions } from "../state/project";
+import { inspection, type RunOptions, runOptions } from "../state/project";
+import { scene } from "../state/scene";
 import { setRunOptions } from "./projectActions";
 
 /** Where the files hold the orientation several times: which one is taken. */
@@ -47,7 +48,7 @@ const placeOpen = signal(false);
 
 /** Region of interest and height of the ground, both in the frame of the orientation. */
 export function PlaceFields() {
-  const { roi, groundZ, tileM, epsg } = runOptions.value;
+  const { roi, groundZ, epsg } = runOptions.value;
   return (
     <details
       class="params"
@@ -56,41 +57,33 @@ export function PlaceFields() {
         placeOpen.value = event.currentTarget.open;
       }}
     >
-      <summary>Region and ground</summary>
+      <summary>Region, ground, reference system</summary>
       <OptionField
         id="roi"
         label="Region x0, y0, x1, y1 (m)"
         placeholder="all"
-        value={roi}
+        of="roi"
         parse={parseRegion}
-        onValue={(roi) => void setRunOptions({ roi })}
       />
       <OptionField
         id="ground-z"
         label="Height of the ground (m)"
         placeholder="estimated"
-        value={groundZ}
+        of="groundZ"
         parse={parseHeight}
-        onValue={(groundZ) => void setRunOptions({ groundZ })}
       />
       <OptionField
         id="epsg"
-        label="Reference system (EPSG code)"
+        label="Reference system: EPSG code, or name"
         placeholder="as the files say"
-        value={epsg}
+        of="epsg"
         parse={parseEpsg}
-        onValue={(epsg) => void setRunOptions({ epsg })}
+        hint={systemWords(epsg, scene.value?.origin)}
+        choices={SYSTEMS.map(({ code, name }) => [String(code), name])}
       />
-      <OptionField
-        id="tile"
-        label="Tile size (m)"
-        placeholder="no tiles"
-        value={tileM}
-        parse={parseTile}
-        onValue={(tileM) => void setRunOptions({ tileM, isAtOnce: tileM === null })}
-      />
+      <OptionField id="tile" label="Tile size (m)" placeholder="no tiles" of="tileM" parse={parseTile} />
       {method.value !== "rectangles" && (
-        <label class="option">
+        <label class="option-check">
           <input type="checkbox" checked={isAdjusted()} onChange={() => setParam(ADJUSTED, !isAdjusted())} />
           Adjust small errors of single views
         </label>
@@ -106,38 +99,28 @@ function isAdjusted(): boolean {
   return params.value["adjustment"]?.["enabled"] !== false;
 }
 
-interface FieldProps<T> {
+interface FieldProps<K extends keyof RunOptions> {
   id: string;
   label: string;
   placeholder: string;
-  value: T | null;
-  parse: (text: string) => Parsed<T>;
-  onValue: (value: T | null) => void;
+  of: K;
+  parse: (text: string) => Parsed<RunOptions[K]>;
+  hint?: string;
+  choices?: readonly (readonly [string, string])[];
 }
 
-function OptionField<T>({ id, label, placeholder, value, parse, onValue }: FieldProps<T>) {
-  const [error, setError] = useState("");
-  const change = (text: string) => {
-    const parsed = parse(text);
-    setError("error" in parsed ? parsed.error : "");
-    if ("value" in parsed) {
-      onValue(parsed.value);
-    }
-    return "value" in parsed;
-  };
+function OptionField<K extends keyof RunOptions>({ label, of, ...field }: FieldProps<K>) {
+  const value = runOptions.value[of];
   return (
     <div class="option">
-      <label for={id}>{label}</label>
+      <label for={field.id}>{label}</label>
       <TextField
-        id={id}
+        {...field}
         value={Array.isArray(value) ? value.join(", ") : String(value ?? "")}
-        placeholder={placeholder}
-        isInvalid={error !== ""}
-        onTake={change}
+        onValue={(next) =>
+          void setRunOptions({ [of]: next, ...(of === "tileM" && { isAtOnce: next === null }) })
+        }
       />
-      <span id={`${id}-note`} class="error note">
-        {error}
-      </span>
     </div>
   );
 }

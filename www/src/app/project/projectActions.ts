@@ -9,7 +9,7 @@ import { saveFile } from "../parts/saveFile";
 import type { Turn } from "../session/actionQueue";
 import { refusalNotices } from "../session/failureNotice";
 import { forgetFlight, planFlight, proposeTiles } from "../session/flightPlanning";
-import { forgetMethods } from "../session/methodResults";
+import { showFound } from "../session/foundBefore";
 import {
   actions,
   engine,
@@ -20,29 +20,29 @@ import {
   outdateScene,
   tellParams,
 } from "../session/session";
-import { clearResults, runEverything, runStages, UNDO_ADDING } from "../session/stageRuns";
+import { changeParams, clearResults, runEverything, runStages, runTo } from "../session/stageRuns";
+import { noteStep, type Step, steps, takeStep, UNDO, UNDO_ADDING, undoneSteps } from "../session/steps";
 import {
   packResults,
   presentResults,
-  type StoredResults,
   showOutdated,
   showStoredResults,
   unpackResults,
 } from "../session/storedResults";
-import { linkedParams } from "../settings/addressLink";
 import { loadOptions, wishesOf } from "../settings/loadOptions";
 import { changedParams, paramsOf } from "../settings/parameterForm";
 import { keepResult } from "../state/keptResult";
-import { dismissAbout, dismissOffers, notify } from "../state/notices";
+import { dismissAbout, notify } from "../state/notices";
 import { defaults, method, params, replaceParams } from "../state/parameters";
 import {
   files,
   hasPhotographsOnly,
   inspection,
-  isDemo,
   markAsDemo,
   NO_OPTIONS,
   nameProject,
+  type ProjectState,
+  presentProject,
   projectName,
   type RunOptions,
   replaceFiles,
@@ -52,12 +52,12 @@ import {
 } from "../state/project";
 import { allResults } from "../state/results";
 import { clearScene, scene } from "../state/scene";
-import { replaceStages } from "../state/stages";
+import { replaceStages, stages } from "../state/stages";
 import { showTab, showView, standAt, tab } from "../state/viewState";
 import { openPanel } from "../view/screen/panels";
 import { placeOf } from "./folders";
 import { baseName } from "./inputFiles";
-import type { StoredProject } from "./storedProject";
+import { forgetStoredProject, readStoredProject, readStoredResults } from "./storedProject";
 
 /** Adds files to the project (the same path replaces), inspects them, and loads the scene once it looks whole. */
 export async function addFiles(added: InputFile[]): Promise<void> {
@@ -114,11 +114,13 @@ function nameOf(all: readonly InputFile[]): string {
 }
 
 /** The same as part of another action. */
-async function openIn(turn: Turn, next: InputFile[], name: string): Promise<void> {
+async function openIn(turn: Turn, next: InputFile[], name: string, id?: number): Promise<void> {
   noteStep(`“${projectName.value}” closed`);
-  replaceFiles([]);
-  nameProject(name);
-  setProject(next);
+  batch(() => {
+    replaceFiles([]);
+    nameProject(name, id);
+    setProject(next);
+  });
   offerUndo();
   await loadProject(turn, adoptProject);
   await adoptResults();
@@ -136,7 +138,8 @@ async function adoptProject(): Promise<void> {
     replaceParams(paramsOf(defaults.value, changedParams(defaults.value, asTree(opened.params))));
     setInspection(null);
   });
-  await tellParams();
+  await tellParams(params.value);
+  replaceStages(stagesOf(method.value));
   await ensureInspected();
 }
 
@@ -160,7 +163,7 @@ export async function saveProject(): Promise<void> {
       return;
     }
     await ensureInspected();
-    await engine.call("setParams", params.value);
+    await tellParams(params.value);
     const options = loadOptions(runOptions.value, inspection.value);
     const shown = presentResults();
     const packed = shown === null ? new Uint8Array() : packResults(shown);
@@ -174,7 +177,7 @@ export async function removeFile(path: string): Promise<void> {
     const left = files.value.filter((file) => file.path !== path);
     // A second click on the same file.
     if (left.length < files.value.length) {
-      remove(baseName(path), left);
+      remove(`${baseName(path)} removed`, left);
       await loadProject(turn);
     }
   });
@@ -184,61 +187,52 @@ export async function removeFile(path: string): Promise<void> {
 export async function clearProject(): Promise<void> {
   await actions.perform({ kind: "open", name: "nothing", phase: "load" }, () => {
     if (files.value.length > 0) {
-      remove(`“${projectName.value}”`, []);
-      nameProject("");
+      batch(() => {
+        remove(`“${projectName.value}” closed`, []);
+        nameProject("");
+      });
     }
   });
 }
 
-const UNDO = "Undo";
-/** So many steps are kept: each holds what had been found. */
-const MOST_STEPS = 8;
-
-/** What was done to the project in this visit, and how it was before that; the last step is taken back first. */
-let steps: { what: string; before: StoredProject; found: StoredResults | null }[] = [];
-
-/** Notes the project as it is, before it changes. */
-function noteStep(what: string): void {
-  if (files.value.length > 0) {
-    const before: StoredProject = {
-      name: projectName.value,
-      isDemo: isDemo.value,
-      files: files.value,
-      options: runOptions.value,
-      params: params.value,
-    };
-    steps = [...steps, { what, before, found: presentResults() }].slice(-MOST_STEPS);
-  }
-}
-
 /** Leaves some of the files, and offers to take that back. */
 function remove(what: string, left: InputFile[]): void {
-  noteStep(`${what} removed`);
+  noteStep(what);
   setProject(left);
   offerUndo();
 }
 
-/** Offers to take back the last step, in place of any other one. */
+/** Offers to take back the last step, where it is about the project. */
 function offerUndo(name = UNDO, text = ""): void {
-  dismissOffers(UNDO);
-  dismissOffers(UNDO_ADDING);
-  const last = steps.at(-1);
-  if (last !== undefined) {
+  const last = steps.value.at(-1);
+  if (last?.about === "project") {
     notify({ severity: "info", title: last.what, text, action: { name, run: () => void undo() } });
   }
 }
 
 /** Takes back the last step. */
-export async function undo(): Promise<void> {
+export function undo(): Promise<void> {
+  return goTo("undo");
+}
+
+/** Does the step again that was taken back last. */
+export function redo(): Promise<void> {
+  return goTo("redo");
+}
+
+async function goTo(way: "undo" | "redo"): Promise<void> {
+  const { files: wanted, options } = (way === "undo" ? steps : undoneSteps).value.at(-1)?.state ?? {};
+  if (wanted === files.value && JSON.stringify(options) === JSON.stringify(runOptions.value)) {
+    await changeBack(takeStep(way));
+    return;
+  }
   await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, async (turn) => {
-    const last = steps.at(-1);
-    if (last === undefined) {
-      return;
-    }
-    steps = steps.slice(0, -1);
-    await restoreIn(turn, last.before, () => offerUndo());
-    if (last.found !== null && scene.value !== null) {
-      showStoredResults(last.found);
+    const step = takeStep(way);
+    if (step !== null) {
+      const restoring = restoreIn(turn, step.state);
+      offerUndo();
+      await restoring;
+      showFound();
     }
     if (allResults.value.main.glb !== null) {
       showTab("model");
@@ -246,18 +240,58 @@ export async function undo(): Promise<void> {
   });
 }
 
-/** Takes up a stored project as part of another action; `shown` happens as soon as its files are there. */
-export async function restoreIn(turn: Turn, kept: StoredProject, shown = () => {}): Promise<void> {
-  nameProject(kept.name);
-  const linked = linkedParams();
+/** Of parameters nothing has to be read; corrections are applied at once. */
+async function changeBack(step: Step | null): Promise<void> {
+  if (step !== null) {
+    changeParams(step.state.params);
+    const last = stages.value.at(-1);
+    if (step.about === "corrections" && last !== undefined) {
+      await runTo(last.name);
+    }
+  }
+}
+
+/** Opens a project of an earlier visit; nothing happens where the person does not let its folder be read. */
+export async function reopen(id: number): Promise<void> {
+  const stored = await readStoredProject(id);
+  const kept = stored !== null && "unlock" in stored ? await stored.unlock() : stored;
+  if (kept !== null) {
+    await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, async (turn) => {
+      await restoreWithResults(turn, kept);
+      if (allResults.value.main.glb !== null) {
+        showTab("model");
+      }
+    });
+  }
+}
+
+/** Lets go of the project, and of what the browser keeps of it. */
+export async function deleteProject(): Promise<void> {
+  const { id } = presentProject();
+  await clearProject();
+  await forgetStoredProject(id);
+}
+
+/** Takes up a stored project with what was found of it, as part of another action. */
+export async function restoreWithResults(turn: Turn, kept: ProjectState, linked = {}): Promise<void> {
+  await restoreIn(turn, kept, linked);
+  const found = await readStoredResults();
+  turn.signal.throwIfAborted();
+  if (found !== null && (scene.value !== null || runOptions.value.tileM !== null)) {
+    showStoredResults(found);
+  }
+}
+
+/** Takes up a project as it was, but for what a link changes. */
+async function restoreIn(turn: Turn, kept: ProjectState, linked = {}): Promise<void> {
   batch(() => {
+    nameProject(kept.name, kept.id);
     replaceParams(paramsOf(defaults.value, { ...changedParams(defaults.value, kept.params), ...linked }));
     replaceStages(stagesOf(method.value));
     setProject(kept.files);
     replaceRunOptions({ ...NO_OPTIONS, ...kept.options });
     markAsDemo(kept.isDemo);
   });
-  shown();
   await loadProject(turn);
 }
 
@@ -269,13 +303,16 @@ export async function openDemo(target?: StageName | null): Promise<void> {
   await actions.perform({ kind: "open", name: "demo", phase: "load" }, (turn) => openDemoIn(turn, target));
 }
 
+/** However often it is opened, it is kept once. */
+const DEMO_ID = 1;
+
 /** The same as part of another action. */
 export async function openDemoIn(turn: Turn, target?: StageName | null): Promise<void> {
   turn.enter("load", "Fetching the demo scene");
   const fetched = await fetchDemo(turn.signal);
   turn.signal.throwIfAborted();
   turn.enter("load", "Reading files");
-  const opening = openIn(turn, fetched.files, fetched.title);
+  const opening = openIn(turn, fetched.files, fetched.title, DEMO_ID);
   markAsDemo(true);
   await opening;
   if (target === undefined) {
@@ -285,10 +322,25 @@ export async function openDemoIn(turn: Turn, target?: StageName | null): Promise
   }
 }
 
+/** A change of what is asked for, in the list of steps. */
+const OPTION_WORDS: Readonly<Partial<Record<keyof RunOptions, string>>> = {
+  orientation: "Another orientation",
+  leftOut: "Files left out or taken",
+  roi: "Region",
+  groundZ: "Height of the ground",
+  applyFix: "Mistake in the orientation",
+  ignoreCheck: "Orientation check",
+  tileM: "Tiles",
+  reduction: "Size of the photographs",
+  epsg: "Reference system",
+};
+
 /** Changes what is asked for beyond the files, and loads the scene again. */
 export async function setRunOptions(change: Partial<RunOptions>): Promise<void> {
   await actions.perform({ kind: "change", phase: "load", words: "Loading" }, async (turn) => {
     const look = presentLook();
+    const [name = ""] = Object.keys(change);
+    noteStep(OPTION_WORDS[name as keyof RunOptions] ?? "Choice changed", "options");
     outdateScene();
     outdateInspection();
     batch(() => {
@@ -313,9 +365,11 @@ function presentLook() {
   return { found: presentResults(), tab: tab.value };
 }
 
-/** The same afterwards, outdated. */
+/** The same afterwards, outdated unless it was found so before. */
 function lookAgain(before: ReturnType<typeof presentLook>): void {
-  showOutdated(before.found);
+  if (!showFound()) {
+    showOutdated(before.found);
+  }
   if (before.found !== null && scene.value !== null) {
     showTab(before.tab);
   }
@@ -357,7 +411,9 @@ async function loadProject(turn: Turn, adopt?: () => Promise<void>): Promise<voi
   }
   // What is missing, and how to come by it, fills the page already.
   const isSaid = hasPhotographsOnly.value && problems.length === 1;
-  for (const notice of isSaid ? [] : refusalNotices(problems)) {
+  // Without a photograph all else follows from that.
+  const told = inspection.value?.images.length === 0 ? problems.slice(0, 1) : problems;
+  for (const notice of isSaid ? [] : refusalNotices(told)) {
     notify(notice);
   }
 }
@@ -368,7 +424,6 @@ function closeScene(): void {
   showView(0);
   standAt(null);
   keepResult(null);
-  forgetMethods();
   clearResults();
 }
 

@@ -1,27 +1,32 @@
-/** The project kept in this browser (IndexedDB) over reloads: files, options, parameters, and what was found with them. */
+/** The last projects, kept in this browser (IndexedDB): files, options, parameters, and what was found with them. */
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import type { InputFile } from "../../shared/calls";
-import type { ParamTree } from "../../shared/paramTree";
 import { presentResults, type StoredResults } from "../session/storedResults";
 import { isBusy } from "../state/activity";
-import { defaults, params } from "../state/parameters";
-import { files, isDemo, projectName, type RunOptions, runOptions } from "../state/project";
+import { defaults } from "../state/parameters";
+import { files, type ProjectState, presentProject, runOptions } from "../state/project";
 import { askToRead, fileAt, isReadable, placeOf } from "./folders";
+import { storeOf } from "./tiles/database";
 import { forgetKeptTiles } from "./tiles/keptTiles";
 
-export interface StoredProject {
-  name: string;
-  isDemo: boolean;
-  files: InputFile[];
-  options: RunOptions;
-  params: ParamTree;
+/** The projects that are kept, each by its number: files, options and parameters, and results. */
+const request = storeOf("ridgeline", "project", 2);
+/** The number of the project that was open last. */
+const PRESENT = "present";
+type Part = "project" | "files" | "results";
+const keyOf = (id: number, part: Part): IDBValidKey => [id, part];
+
+/** So many are kept; beyond them the one that was open longest ago is deleted. */
+const MOST_PROJECTS = 5;
+
+interface Kept extends Omit<ProjectState, "files"> {
+  /** When it was open last, milliseconds since 1970. */
+  seen: number;
 }
 
-const DATABASE = "ridgeline";
-const STORE = "project";
-const KEY = "present";
-const FILES_KEY = "files";
-const RESULTS_KEY = "results";
+const listed = signal<readonly Kept[]>([]);
+/** What is kept, the last one first; known once it has been listed. */
+export const keptProjects: ReadonlySignal<readonly Kept[]> = listed;
 
 /** A file as it is kept: the folder that it lies in, where the browser can read that again, or a copy. */
 type StoredFile = { path: string; size: number } & (
@@ -32,9 +37,8 @@ type StoredFile = { path: string; size: number } & (
 /** A project whose files lie in a folder that the browser reads only when the person allows it again. */
 export interface LockedProject {
   name: string;
-  folder: string;
   /** Asks the person; null where that is declined. Only as the answer to a click. */
-  unlock(): Promise<StoredProject | null>;
+  unlock(): Promise<ProjectState | null>;
 }
 
 const written = signal<number | null>(null);
@@ -44,13 +48,12 @@ export const storedBytes: ReadonlySignal<number | null> = written;
 /** So long after the last change the project is written, milliseconds. */
 const DELAY_MS = 400;
 
-/** The project of the last visit; null where there is none, or storage is forbidden. */
-export async function readStoredProject(): Promise<StoredProject | LockedProject | null> {
+/** A project that is kept, or that of the last visit; null where there is none, or storage is forbidden. */
+export async function readStoredProject(asked?: number): Promise<ProjectState | LockedProject | null> {
   try {
-    const kept = await request<Omit<StoredProject, "files"> | undefined>("readonly", (store) =>
-      store.get(KEY),
-    );
-    const stored = await request<StoredFile[] | undefined>("readonly", (store) => store.get(FILES_KEY));
+    const id = asked ?? (await read<number>(PRESENT));
+    const kept = id === undefined ? undefined : await read<Kept>(keyOf(id, "project"));
+    const stored = id === undefined ? undefined : await read<StoredFile[]>(keyOf(id, "files"));
     if (kept === undefined || stored === undefined) {
       return null;
     }
@@ -59,10 +62,8 @@ export async function readStoredProject(): Promise<StoredProject | LockedProject
     if (readable.every((is) => is)) {
       return { ...kept, files: await opened(stored) };
     }
-    isLocked = true;
     return {
       name: kept.name,
-      folder: [...folders].map(({ name }) => name).join(", "),
       unlock: async () => {
         const allowed = await Promise.all([...folders].map(askToRead));
         return allowed.every((is) => is) ? { ...kept, files: await opened(stored) } : null;
@@ -72,9 +73,6 @@ export async function readStoredProject(): Promise<StoredProject | LockedProject
     return null;
   }
 }
-
-/** Until the person has allowed or opened something, nothing of what is kept is replaced. */
-let isLocked = false;
 
 async function opened(stored: readonly StoredFile[]): Promise<InputFile[]> {
   const found = await Promise.all(
@@ -96,8 +94,8 @@ function storedFile({ path, blob }: InputFile): StoredFile {
 /** What was found of the present project in the last visit; null where there is nothing. */
 export async function readStoredResults(): Promise<StoredResults | null> {
   try {
-    const get = (store: IDBObjectStore) => store.get(RESULTS_KEY);
-    const kept = await request<{ of: string; found: StoredResults } | undefined>("readonly", get);
+    const { id } = presentProject();
+    const kept = await read<{ of: string; found: StoredResults }>(keyOf(id, "results"));
     return kept?.of === presentInput() ? kept.found : null;
   } catch {
     return null;
@@ -109,54 +107,90 @@ function presentInput(): string {
   return JSON.stringify([files.value.map(({ path, blob }) => [path, blob.size]), runOptions.value]);
 }
 
-export async function forgetStoredProject(): Promise<void> {
-  try {
+/** Looks what is kept. */
+export async function listKept(): Promise<void> {
+  const keys = await request<IDBValidKey[]>("readonly", (store) => store.getAllKeys()).catch(() => []);
+  const ids = keys.flatMap((key) => (Array.isArray(key) && key[1] === "project" ? [Number(key[0])] : []));
+  const all = await Promise.all(ids.map((id) => read<Kept>(keyOf(id, "project")).catch(() => undefined)));
+  listed.value = all.filter((one) => one !== undefined).sort((a, b) => b.seen - a.seen);
+}
+
+/** Forgets a project, and the tiles that are done of the last one. */
+export async function forgetStoredProject(id: number): Promise<void> {
+  await inTurn(async () => {
     writtenFiles = null;
-    await request("readwrite", (store) => store.clear());
+    forgotten.add(id);
+    await forgetOne(id).catch(() => undefined);
+    await request("readwrite", (store) => store.delete(PRESENT)).catch(() => undefined);
     await forgetKeptTiles();
-  } catch {
-    // Nothing was kept.
-  }
-  written.value = null;
+    written.value = null;
+    await listKept();
+  });
+}
+
+/** All parts of it: lists are ordered by their members, and come after numbers and words. */
+async function forgetOne(id: number): Promise<void> {
+  await request("readwrite", (store) => store.delete(IDBKeyRange.bound([id], [id, []])));
+}
+
+/** What was found of these a little while ago is not written any more. */
+const forgotten = new Set<number>();
+
+/** All that is written and forgotten, one after the other. */
+let lastWrite: Promise<void> = Promise.resolve();
+
+function inTurn(act: () => Promise<void>): Promise<void> {
+  lastWrite = lastWrite.then(act);
+  return lastWrite;
+}
+
+/** Writes the last of several changes a little later, and at once where those that follow are of another project. */
+function writer<T>(act: (id: number, what: T) => Promise<void>): (what: T) => void {
+  let [timer, waiting, of] = [0, () => {}, 0];
+  return (what) => {
+    const { id } = presentProject();
+    clearTimeout(timer);
+    if (of !== id) {
+      waiting();
+    }
+    of = id;
+    waiting = () => {
+      waiting = () => {};
+      void inTurn(() => act(id, what));
+    };
+    timer = window.setTimeout(() => waiting(), DELAY_MS);
+  };
 }
 
 /** Writes the project whenever it changes. */
 export function storeProject(): void {
-  let timer = 0;
+  const later = writer(write);
   effect(() => {
-    const kept: StoredProject = {
-      name: projectName.value,
-      isDemo: isDemo.value,
-      files: files.value,
-      options: runOptions.value,
-      params: params.value,
-    };
+    const kept = presentProject();
     if (Object.keys(defaults.value).length > 0) {
-      clearTimeout(timer);
-      timer = window.setTimeout(() => void write(kept), DELAY_MS);
+      later(kept);
     }
   });
 }
 
 /** Writes the results whenever there are others and nothing is going on. */
 export function storeResults(): void {
-  let timer = 0;
+  const later = writer(writeResults);
   effect(() => {
     const found = presentResults();
-    clearTimeout(timer);
     if (!isBusy.value && files.value.length > 0) {
-      const kept = { of: presentInput(), found };
-      timer = window.setTimeout(() => void writeResults(kept), DELAY_MS);
+      later({ of: presentInput(), found });
     }
   });
 }
 
-async function writeResults(kept: { of: string; found: StoredResults | null }): Promise<void> {
+async function writeResults(id: number, kept: { of: string; found: StoredResults | null }): Promise<void> {
+  if (forgotten.has(id)) {
+    return;
+  }
   try {
-    const isSome = kept.found !== null;
-    await request("readwrite", (store) =>
-      isSome ? store.put(kept, RESULTS_KEY) : store.delete(RESULTS_KEY),
-    );
+    const key = keyOf(id, "results");
+    await request("readwrite", (store) => (kept.found === null ? store.delete(key) : store.put(kept, key)));
   } catch {
     // They are computed again.
   }
@@ -165,46 +199,35 @@ async function writeResults(kept: { of: string; found: StoredResults | null }): 
 /** The files that are written already: a copy of a flight takes its time. */
 let writtenFiles: readonly InputFile[] | null = null;
 
-async function write({ files: all, ...kept }: StoredProject): Promise<void> {
-  if (all.length === 0) {
-    if (!isLocked) {
-      await forgetStoredProject();
-    }
-    return;
-  }
-  isLocked = false;
+async function write(_: number, { files: all, ...project }: ProjectState): Promise<void> {
   try {
+    if (all.length === 0) {
+      // At the beginning of a visit nothing has been closed.
+      if (writtenFiles !== null) {
+        await request("readwrite", (store) => store.delete(PRESENT));
+      }
+      return;
+    }
+    forgotten.delete(project.id);
     if (writtenFiles !== all) {
-      await request("readwrite", (store) => store.put(all.map(storedFile), FILES_KEY));
+      await request("readwrite", (store) => store.put(all.map(storedFile), keyOf(project.id, "files")));
       writtenFiles = all;
     }
-    await request("readwrite", (store) => store.put(kept, KEY));
+    const kept: Kept = { ...project, seen: Date.now() };
+    await request("readwrite", (store) => store.put(kept, keyOf(project.id, "project")));
+    await request("readwrite", (store) => store.put(project.id, PRESENT));
     const copied = all.filter(({ blob }) => placeOf(blob) === undefined);
     written.value = copied.reduce((sum, { blob }) => sum + blob.size, 0);
+    await listKept();
+    for (const { id } of listed.value.slice(MOST_PROJECTS)) {
+      await forgetOne(id);
+    }
   } catch {
     // Private windows and full disks: the project lasts until the page is closed.
     written.value = null;
   }
 }
 
-function request<T>(mode: IDBTransactionMode, act: (store: IDBObjectStore) => IDBRequest): Promise<T> {
-  return new Promise((resolve, reject) => {
-    const opening = indexedDB.open(DATABASE, 1);
-    opening.onupgradeneeded = () => opening.result.createObjectStore(STORE);
-    opening.onerror = () => reject(opening.error);
-    opening.onsuccess = () => {
-      const database = opening.result;
-      const transaction = database.transaction(STORE, mode);
-      const acting = act(transaction.objectStore(STORE));
-      transaction.oncomplete = () => {
-        database.close();
-        resolve(acting.result as T);
-      };
-      transaction.onerror = () => {
-        database.close();
-        reject(transaction.error);
-      };
-      transaction.onabort = transaction.onerror;
-    };
-  });
+async function read<T>(key: IDBValidKey): Promise<T | undefined> {
+  return request<T | undefined>("readonly", (store) => store.get(key));
 }

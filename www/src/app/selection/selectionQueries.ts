@@ -96,7 +96,7 @@ function offerRun(): void {
     notify({
       severity: "info",
       title: "The figures of what is picked need a run",
-      text: "The results are those of the last visit.",
+      text: "What is shown was found earlier; a run finds the same again.",
       action: { name: "Run all", run: () => void runAll() },
     });
   }

@@ -91,9 +91,11 @@ export function workerNotice(failure: Error): Omit<Notice, "id"> {
   };
 }
 
-/** The core's words without the options of the command line, which the page has fields for. */
+/** The core's words without the options of the command line, which the page has fields for, and what a decoder says of damage. */
 export function onPage(text: string): string {
-  return text.replaceAll(/\s*\([^()]*--[a-z][^()]*\)/g, "");
+  return text
+    .replaceAll(/\s*\([^()]*--[a-z][^()]*\)/g, "")
+    .replace(/: (?:invalid Zip archive|Format error decoding)[^;]*/, ": it is damaged or incomplete");
 }
 
 /** Separates what is wrong from what to do, at the last semicolon. */

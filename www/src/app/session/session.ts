@@ -3,6 +3,7 @@
 import { Engine, EngineError, isFatal } from "../../core/engine";
 import { WorkerPool } from "../../core/workerPool";
 import type { Args, CallName, Result } from "../../shared/calls";
+import type { ParamTree } from "../../shared/paramTree";
 import type { SceneInfo } from "../../shared/records";
 import { stagesOf } from "../../stages/catalogue";
 import { flightPlan, showTileFraction, tileRun } from "../project/tiles/flight";
@@ -134,15 +135,20 @@ async function openEngine(): Promise<void> {
   if (stages.value.length === 0) {
     // With what has been chosen while the core was compiled.
     replaceParams(paramsOf(defaults, { ...linkedParams(), ...params.value }));
-    await tellParams();
+    await tellParams(params.value);
+    replaceStages(stagesOf(method.value));
   }
 }
 
-/** Gives the core the parameters, and shows the stages of the chosen method. */
-export async function tellParams(): Promise<void> {
-  await openEngine();
-  await engine.call("setParams", params.value);
-  replaceStages(stagesOf(method.value));
+let told: ParamTree | null = null;
+
+/** Gives the core the parameters: what it found with others it drops. */
+export async function tellParams(values: ParamTree): Promise<void> {
+  if (values !== told && held.results !== null) {
+    noteResults();
+  }
+  told = values;
+  await engine.call("setParams", values);
 }
 
 /** Gives the worker the project's files, where it does not hold them yet. */
@@ -176,7 +182,7 @@ export async function ensureScene(): Promise<void> {
       setImages(await fetchImages(loaded));
     }
   }
-  await engine.call("setParams", params.value);
+  await tellParams(params.value);
 }
 
 /** Shows the views where they are now: the adjustment moves them, and changed parameters move them back. */

@@ -3,10 +3,18 @@ import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
 import type { ParamTree, ParamValue } from "../../shared/paramTree";
 import type { Method, StageName } from "../../shared/stages";
-import { firstStageOf, mainTabOf, shownTabOf, stagesOf, stageWords } from "../../stages/catalogue";
+import {
+  firstStageOf,
+  METHOD_WORDS,
+  mainTabOf,
+  methodOf,
+  shownTabOf,
+  stagesOf,
+  stageWords,
+} from "../../stages/catalogue";
 import { fetchResults } from "../../stages/list";
 import { saveFile } from "../parts/saveFile";
-import { withParam } from "../settings/parameterForm";
+import { changedParams, fieldText, paramName, withParam } from "../settings/parameterForm";
 import { isBusy } from "../state/activity";
 import { announce, dismissOffers, notify } from "../state/notices";
 import { defaults, method, params, replaceParams } from "../state/parameters";
@@ -14,6 +22,7 @@ import { files, hasPhotographsOnly, runOptions } from "../state/project";
 import {
   addResults,
   exportNames,
+  mainResults,
   NO_RESULTS,
   preliminaryFacets,
   setExportNames,
@@ -35,8 +44,18 @@ import { chooseWorkers, workers } from "../state/workers";
 import type { Turn } from "./actionQueue";
 import { workerNotice } from "./failureNotice";
 import { beginFirstLook, endFirstLook } from "./firstLook";
-import { keepMethod, showKeptMethod } from "./methodResults";
-import { actions, engine, ensureScene, followCameras, hasResults, noteResults, workerPool } from "./session";
+import { showFound } from "./foundBefore";
+import {
+  actions,
+  engine,
+  ensureScene,
+  followCameras,
+  hasResults,
+  noteResults,
+  tellParams,
+  workerPool,
+} from "./session";
+import { noteStep, UNDO_ADDING } from "./steps";
 import { runTiles } from "./tiledRun";
 
 /** Runs every stage up to `target` that the worker has not run with the present parameters. */
@@ -62,9 +81,6 @@ export async function runEverything(turn: Turn): Promise<void> {
   }
 }
 
-/** On what is outdated once files have come: a run makes it up to date. */
-export const UNDO_ADDING = "Undo adding";
-
 /** Runs up to a stage as part of another action. */
 export async function runStages(turn: Turn, target: StageName): Promise<void> {
   turn.enter("run");
@@ -84,7 +100,7 @@ export async function runStages(turn: Turn, target: StageName): Promise<void> {
     for (let i = freshStages.value; i <= end; i = freshStages.value) {
       const taken = params.value;
       beginStage(i);
-      await engine.call("setParams", taken);
+      await tellParams(taken);
       await runStage(names[i] as StageName, i, taken);
     }
   } finally {
@@ -97,15 +113,46 @@ export function canRun(count: number): boolean {
   return files.value.length > 0 && !hasPhotographsOnly.value && !isBusy.value && freshStages.value < count;
 }
 
-/** Changes the parameter at a path of names; stages that depend on it become outdated. */
-export function setParam(path: string, value: ParamValue): void {
-  replaceParams(withParam(params.value, path, value));
-  outdateStages(
-    firstStageOf(
-      path,
-      stages.value.map(({ name }) => name),
-    ),
-  );
+/** Changes the parameter at a path of names, as a step with these words. */
+export function setParam(
+  path: string,
+  value: ParamValue,
+  what = `${paramName(path)}: ${fieldText(value)}`,
+): void {
+  noteStep(what, path);
+  changeParam(path, value);
+}
+
+/** The same as part of another step. */
+export function changeParam(path: string, value: ParamValue): void {
+  changeParams(withParam(params.value, path, value), [path]);
+}
+
+/**
+ * Takes other parameters: stages that depend on what changed become outdated, or those of another method take their place;
+ * what was found with the same parameters before is shown again. The core is told when it runs.
+ */
+export function changeParams(
+  next: ParamTree,
+  paths: readonly string[] = Object.keys(changedParams(params.value, next)),
+): void {
+  const names = stages.value.map(({ name }) => name);
+  const isOtherMethod = methodOf(next) !== method.value;
+  batch(() => {
+    replaceParams(next);
+    if (isOtherMethod) {
+      // Until the core is compiled there are none.
+      if (stages.value.length > 0) {
+        replaceStages(stagesOf(method.value));
+      }
+      clearResults();
+    } else {
+      outdateStages(Math.min(names.length, ...paths.map((path) => firstStageOf(path, names))));
+    }
+    if (showFound() && isOtherMethod && mainResults.value.glb !== null) {
+      showTab("model");
+    }
+  });
 }
 
 /** Chooses the method: its stages take the place of the other's, with what they have found before. */
@@ -115,26 +162,18 @@ export async function setMethod(next: Method): Promise<void> {
   }
 }
 
-/** The same as part of another action; the core is told when it runs. */
+/** The same as part of another action. */
 export function chooseMethod(next: Method): void {
-  keepMethod();
-  batch(() => {
-    replaceParams({ ...params.value, method: next as unknown as ParamTree[string] });
-    // Until the core is compiled there are none.
-    if (stages.value.length > 0) {
-      replaceStages(stagesOf(next));
-    }
-    clearResults();
-    showKeptMethod();
-  });
+  noteStep(`Method: ${METHOD_WORDS[next].title}`, "method");
+  changeParams({ ...params.value, method: next as unknown as ParamTree[string] });
 }
 
 export function resetParams(): void {
   const chosen = method.value as unknown as ParamTree[string];
   const { corrections } = params.value;
   const kept = corrections === undefined ? {} : { corrections };
-  replaceParams({ ...structuredClone(defaults.value), method: chosen, ...kept });
-  outdateStages(0);
+  noteStep("Parameters reset", "parameters");
+  changeParams({ ...structuredClone(defaults.value), method: chosen, ...kept });
 }
 
 /** Saves one output file through the browser. */

@@ -55,7 +55,7 @@ export function showStoredResults(kept: StoredResults): void {
     }
     restoreStages(kept.stages);
     setExportNames(kept.exportNames);
-    if (changesOf(kept.params) !== changesOf(params.value)) {
+    if (changesOf(kept.params) !== changesOf()) {
       outdateStages(0);
     }
   });
@@ -81,7 +81,7 @@ export function showOutdated(kept: StoredResults | null): void {
 }
 
 /** In what parameters differ from the defaults, whatever the order of their names. */
-function changesOf(values: ParamTree): string {
+export function changesOf(values = params.value): string {
   return JSON.stringify(Object.entries(changedParams(defaults.value, values)).sort());
 }
 

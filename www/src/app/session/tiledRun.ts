@@ -17,7 +17,7 @@ import { updateStage } from "../state/stages";
 import { showTab, tab } from "../state/viewState";
 import type { Turn } from "./actionQueue";
 import { keptTilesOf, planFlight, plannedHeights, tileOptions } from "./flightPlanning";
-import { engine, ensureInspected, noteResults, outdateScene } from "./session";
+import { engine, ensureInspected, noteResults, outdateScene, tellParams } from "./session";
 
 /** The progress of the whole area is shown at the last stage: only the model spans the tiles. */
 const STAGE = "model";
@@ -27,7 +27,7 @@ export async function runTiles(turn: Turn, tileM: number): Promise<void> {
   await ensureInspected();
   await planFlight(turn, tileM);
   turn.enter("run");
-  await engine.call("setParams", params.value);
+  await tellParams(params.value);
   const started = performance.now();
   // The worker drops the scene: a tile needs the memory.
   outdateScene();

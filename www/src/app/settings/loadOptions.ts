@@ -1,6 +1,8 @@
 /** What a person asks for beyond the files, as text in fields and as the core takes it. */
 import type { Inspection, LoadOptions, OpenedProject } from "../../shared/records";
+import type { Parsed } from "../parts/TextField";
 import type { RunOptions } from "../state/project";
+import { systemsNamed } from "./referenceSystems";
 
 /** The core's options; the views are named only where some are left out. */
 export function loadOptions(wanted: RunOptions, inspection: Inspection | null): LoadOptions {
@@ -57,7 +59,7 @@ function stem(name: string): string {
 }
 
 /** The size of a tile in metres; nothing is no tiles. */
-export function parseTile(text: string): Parsed<number> {
+export function parseTile(text: string): Parsed<number | null> {
   const parsed = parseHeight(text);
   const isTooSmall = "value" in parsed && parsed.value !== null && parsed.value < LEAST_TILE_M;
   return isTooSmall ? { error: `${LEAST_TILE_M} m or more` } : parsed;
@@ -66,16 +68,8 @@ export function parseTile(text: string): Parsed<number> {
 /** Side of the squares of which tiles consist. */
 const LEAST_TILE_M = 60;
 
-export type Parsed<T> = { value: T | null } | { error: string };
-
-/** One side of a region, metres. */
-export function parseSide(text: string): Parsed<number> {
-  const parsed = parseHeight(text);
-  return "value" in parsed && parsed.value === null ? { error: "a number in metres" } : parsed;
-}
-
 /** "x0, y0, x1, y1" in metres; nothing is the whole scene. */
-export function parseRegion(text: string): Parsed<[number, number, number, number]> {
+export function parseRegion(text: string): Parsed<[number, number, number, number] | null> {
   const words = text.split(/[\s,;]+/).filter((word) => word !== "");
   if (words.length === 0) {
     return { value: null };
@@ -88,7 +82,7 @@ export function parseRegion(text: string): Parsed<[number, number, number, numbe
 }
 
 /** A height in metres; nothing has it estimated. */
-export function parseHeight(text: string): Parsed<number> {
+export function parseHeight(text: string): Parsed<number | null> {
   const trimmed = text.trim();
   if (trimmed === "") {
     return { value: null };
@@ -96,10 +90,17 @@ export function parseHeight(text: string): Parsed<number> {
   return Number.isFinite(Number(trimmed)) ? { value: Number(trimmed) } : { error: "a number in metres" };
 }
 
-/** The code of a reference system; nothing has the files say it. */
-export function parseEpsg(text: string): Parsed<number> {
+/** The code of a reference system, or words of the name of one; nothing has the files say it. */
+export function parseEpsg(text: string): Parsed<number | null> {
   const code = /^(?:EPSG:)?(\d{4,6})$/i.exec(text.trim())?.[1];
-  return text.trim() === "" || code !== undefined
-    ? { value: code === undefined ? null : Number(code) }
-    : { error: "a code such as 25832" };
+  if (text.trim() === "" || code !== undefined) {
+    return { value: code === undefined ? null : Number(code) };
+  }
+  const found = systemsNamed(text);
+  const [only] = found;
+  if (found.length === 1 && only !== undefined) {
+    return { value: only.code };
+  }
+  const some = found.slice(0, 4).map(({ code, name }) => `${code} ${name}`);
+  return { error: some.length === 0 ? "a code such as 25832, or a name" : `which of ${some.join("; ")} …` };
 }

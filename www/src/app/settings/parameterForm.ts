@@ -2,6 +2,7 @@
 import type { ParamGroup, ParamTree, ParamValue } from "../../shared/paramTree";
 import type { Method } from "../../shared/stages";
 import { isReadBy, methodOf, SECTION_TITLES } from "../../stages/catalogue";
+import { type Parsed, parseNumber } from "../parts/TextField";
 
 export interface ParamField {
   key: string;
@@ -153,12 +154,10 @@ export function paramsOf(defaults: ParamTree, changed: Record<string, ParamValue
 }
 
 /** The value of a field's text, or why it cannot be one. */
-export function parseField(field: ParamField, text: string): { value: ParamValue } | { error: string } {
+export function parseField(field: ParamField, text: string): Parsed<ParamValue> {
   switch (field.kind) {
-    case "number": {
-      const value = Number(text.trim().replace(",", "."));
-      return text.trim() === "" || !Number.isFinite(value) ? { error: "A number is expected" } : { value };
-    }
+    case "number":
+      return parseNumber(text);
     case "boolean":
       return { value: text === "true" };
     case "choice":
@@ -232,7 +231,7 @@ function words(key: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
-function parseJson(text: string): { value: ParamValue } | { error: string } {
+function parseJson(text: string): Parsed<ParamValue> {
   try {
     return { value: JSON.parse(text) as ParamValue };
   } catch {

@@ -3,9 +3,7 @@ import "./shell.css";
 import { useEffect, useState } from "preact/hooks";
 import { ArrivalQuestion } from "../project/ArrivalQuestion";
 import { Entrance } from "../project/entrance/Entrance";
-import { undo } from "../project/projectActions";
-import { isCorrecting } from "../results/corrections/drawn";
-import * as corrections from "../results/corrections/history";
+import { redo, undo } from "../project/projectActions";
 import { announcement } from "../state/notices";
 import { face, tab } from "../state/viewState";
 import { showsEntrance, showsWorkbench } from "../view/screen/opening";
@@ -52,19 +50,14 @@ export function App() {
   );
 }
 
-/** Ctrl+Z: of the corrections while there are some to take back, else of the project. A field has its own. */
+const TEXT_FIELDS = "textarea, input:not([type=checkbox], [type=radio], [type=range], [type=file])";
+
+/** Ctrl+Z takes back the last step, Ctrl+Shift+Z does it again. A field of text has its own. */
 function undoByKey(event: KeyboardEvent): void {
-  const isField = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
-  if (event.key.toLowerCase() !== "z" || !(event.ctrlKey || event.metaKey) || isField) {
-    return;
-  }
-  event.preventDefault();
-  if (event.shiftKey) {
-    void corrections.redo();
-  } else if (isCorrecting.value && corrections.canUndo.value) {
-    void corrections.undo();
-  } else {
-    void undo();
+  const isText = event.target instanceof Element && event.target.matches(TEXT_FIELDS);
+  if (event.key.toLowerCase() === "z" && (event.ctrlKey || event.metaKey) && !isText) {
+    event.preventDefault();
+    void (event.shiftKey ? redo() : undo());
   }
 }
 

@@ -3,6 +3,8 @@
 import { Choice } from "../parts/Choice";
 import { LookButtons } from "../parts/LookButtons";
 import { Menu } from "../parts/Menu";
+import { redo, undo } from "../project/projectActions";
+import { steps, undoneSteps } from "../session/steps";
 import { activity } from "../state/activity";
 import { projectName } from "../state/project";
 import { type Face, face, showFace } from "../state/viewState";
@@ -22,6 +24,7 @@ export function Header() {
         <>
           <ProjectButton />
           <FaceSwitch />
+          <Steps />
         </>
       )}
       <span class="grow" />
@@ -71,6 +74,36 @@ function ProjectButton() {
     >
       {title}
     </button>
+  );
+}
+
+/** What was done in this visit, the last step first. */
+function Steps() {
+  const [done, undone] = [steps.value, undoneSteps.value];
+  if (isPhone.value || done.length + undone.length === 0) {
+    return null;
+  }
+  return (
+    <Menu title="↶" label="Steps" class="steps-menu">
+      <div class="row">
+        <button type="button" disabled={done.length === 0} title="Ctrl+Z" onClick={() => void undo()}>
+          Undo
+        </button>
+        <button type="button" disabled={undone.length === 0} title="Ctrl+Shift+Z" onClick={() => void redo()}>
+          Redo
+        </button>
+      </div>
+      <ol aria-label="Steps, the last one first">
+        {undone.map(({ what }, i) => (
+          <li key={`${i} ${what}`} class="muted">
+            {what} <i>(taken back)</i>
+          </li>
+        ))}
+        {[...done].reverse().map(({ what }, i) => (
+          <li key={done.length - i}>{what}</li>
+        ))}
+      </ol>
+    </Menu>
   );
 }
 

@@ -5,21 +5,13 @@ import { lineEnds } from "../../kinds/parts/shapes";
 import type { Selection } from "../../shared/selection";
 import type { StageName } from "../../shared/stages";
 import { stageOfTab, tabsOf } from "../../stages/catalogue";
-import { openDemoIn, restoreIn } from "../project/projectActions";
-import {
-  type LockedProject,
-  readStoredProject,
-  readStoredResults,
-  type StoredProject,
-} from "../project/storedProject";
+import { openDemoIn, restoreWithResults } from "../project/projectActions";
+import { readStoredProject } from "../project/storedProject";
 import type { Turn } from "../session/actionQueue";
 import { actions } from "../session/session";
 import { runStages } from "../session/stageRuns";
-import { showStoredResults } from "../session/storedResults";
-import { opened } from "../settings/addressLink";
-import { dismissOffers, notify } from "../state/notices";
+import { linkedParams, opened } from "../settings/addressLink";
 import { method } from "../state/parameters";
-import { runOptions } from "../state/project";
 import { mainResults, results } from "../state/results";
 import { scene } from "../state/scene";
 import { resumeDetail } from "../state/selectionDetail";
@@ -40,16 +32,14 @@ export async function restoreOpeningState(): Promise<void> {
 async function restoreIt(turn: Turn): Promise<void> {
   const stored = await readStoredProject();
   turn.signal.throwIfAborted();
-  if (stored !== null && "unlock" in stored) {
-    offerLocked(stored);
-  }
+  // One whose folder the browser asks about is opened at the entrance.
   const kept = stored !== null && "files" in stored ? stored : null;
   // A link to the demo scene means it as it was published; a reload, as it was left.
   if (opened.scene === "demo" && !(kept?.isDemo === true && isReload())) {
     await openDemoIn(turn, opened.tab === null ? null : stageOfTab(opened.tab));
   } else if (kept !== null && kept.files.length > 0) {
     turn.enter("load", "Reading files");
-    await restoreWithResults(turn, kept);
+    await restoreWithResults(turn, kept, linkedParams());
     const stage = opened.tab === null ? null : stageOfTab(opened.tab);
     if (stage !== null && scene.value !== null && (!isShown(stage) || asksCore(opened.selection))) {
       await runStages(turn, stage);
@@ -76,39 +66,6 @@ async function restoreIt(turn: Turn): Promise<void> {
   if (opened.tourStep !== null && results.value.glb !== null) {
     await goToIn(turn, opened.tourStep);
   }
-}
-
-async function restoreWithResults(turn: Turn, kept: StoredProject): Promise<void> {
-  await restoreIn(turn, kept);
-  const found = await readStoredResults();
-  turn.signal.throwIfAborted();
-  if (found !== null && (scene.value !== null || runOptions.value.tileM !== null)) {
-    showStoredResults(found);
-  }
-}
-
-/** The photographs of the last visit lie in a folder: the browser reads it again when the person says so. */
-function offerLocked(stored: LockedProject): void {
-  const name = "Open the folder again";
-  notify({
-    severity: "info",
-    title: `The last project lies in the folder ${stored.folder}`,
-    text: "The browser asks before the page reads it again. Tiles that are done are kept.",
-    action: {
-      name,
-      run: () => {
-        const unlocking = stored.unlock();
-        const words = "Reading files";
-        void actions.perform({ kind: "open", name: "folder", phase: "load", words }, async (turn) => {
-          const kept = await unlocking;
-          if (kept !== null) {
-            dismissOffers(name);
-            await restoreWithResults(turn, kept);
-          }
-        });
-      },
-    },
-  });
 }
 
 function isReload(): boolean {

@@ -1,7 +1,9 @@
 /** The project: its files, what they were recognised as, and what is asked for beyond them. */
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
 import type { InputFile } from "../../shared/calls";
+import type { ParamTree } from "../../shared/paramTree";
 import type { FileKind, Inspection } from "../../shared/records";
+import { params } from "./parameters";
 
 /** What the person asked for beyond the files; images, terrain models and footprints are left out by their path. */
 export interface RunOptions {
@@ -41,7 +43,19 @@ export const NO_OPTIONS: RunOptions = {
   epsg: null,
 };
 
+/** All that a person has put into the project, and by which it is told from others. */
+export interface ProjectState {
+  /** When it was begun: two may have one name. */
+  id: number;
+  name: string;
+  isDemo: boolean;
+  files: InputFile[];
+  options: RunOptions;
+  params: ParamTree;
+}
+
 const present = {
+  id: signal(0),
   files: signal<InputFile[]>([]),
   isDemo: signal(false),
   name: signal(""),
@@ -86,8 +100,23 @@ export function markAsDemo(isDemo: boolean): void {
   present.isDemo.value = isDemo;
 }
 
-export function nameProject(name: string): void {
-  present.name.value = name;
+/** Another project than before begins, or is taken up again. */
+export function nameProject(name: string, id = Date.now()): void {
+  batch(() => {
+    present.name.value = name;
+    present.id.value = id;
+  });
+}
+
+export function presentProject(): ProjectState {
+  return {
+    id: present.id.value,
+    name: present.name.value,
+    isDemo: present.isDemo.value,
+    files: present.files.value,
+    options: present.options.value,
+    params: params.value,
+  };
 }
 
 export function replaceRunOptions(options: RunOptions): void {

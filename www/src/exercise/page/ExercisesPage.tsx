@@ -4,9 +4,9 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { counted } from "../../app/parts/counted";
 import { theme } from "../../app/state/theme";
 import { Glossary } from "../../app/words/Glossary";
+import { TeachingHead } from "../../app/words/TeachingHead";
 import { type AnyExercise, EXERCISES, exerciseNamed, KIND_WORDS } from "../exercises";
 import { LESSONS, type Lesson } from "../judging/about";
-import { PageFrame } from "./PageFrame";
 
 const GLOSSARY = "glossary";
 
@@ -15,7 +15,7 @@ export function ExercisesPage({ seed }: { seed: string | null }) {
   const [done, setDone] = useState<ReadonlySet<string>>(new Set());
   const main = useRef<HTMLElement>(null);
   const isGlossary = shown === GLOSSARY || shown.startsWith("term-");
-  const exercise = isGlossary ? null : (exerciseNamed(shown) ?? EXERCISES[0] ?? null);
+  const exercise = isGlossary ? null : (exerciseNamed(shown) ?? firstOf(shown));
   useEffect(() => {
     const note = (event: Event) => {
       const { name, right } = (event as CustomEvent<{ name: string; right: boolean }>).detail;
@@ -32,7 +32,9 @@ export function ExercisesPage({ seed }: { seed: string | null }) {
     }
   }, [shown]);
   return (
-    <PageFrame title="Exercises" other={["./exercises.html?teacher", "For teachers"]}>
+    <div class="exercises">
+      <TeachingHead now={isGlossary ? "Glossary" : "Exercises"} />
+      <h1 class="visually-hidden">{isGlossary ? "Glossary" : "Exercises"}</h1>
       <div class="columns">
         <nav class="contents" aria-label="Exercises">
           <p class="muted">{`${done.size} of ${counted(EXERCISES.length, "exercises")} done`}</p>
@@ -47,18 +49,32 @@ export function ExercisesPage({ seed }: { seed: string | null }) {
                 </ol>
               </li>
             ))}
-            <li>
-              <a href={`#${GLOSSARY}`} aria-current={isGlossary ? "page" : undefined}>
-                Glossary
-              </a>
-            </li>
           </ol>
         </nav>
         <main class="shown" ref={main} tabIndex={-1}>
           {exercise === null ? <Glossary /> : <One exercise={exercise} seed={seed} />}
+          {exercise !== null && <Ways exercise={exercise} />}
         </main>
       </div>
-    </PageFrame>
+    </div>
+  );
+}
+
+/** Of a lesson, as its name says, or of all. */
+function firstOf(lesson: string): AnyExercise | null {
+  return EXERCISES.find((one) => one.lesson === lesson) ?? EXERCISES[0] ?? null;
+}
+
+/** Where to go on, and the lesson that an exercise belongs to. */
+function Ways({ exercise }: { exercise: AnyExercise }) {
+  const place = EXERCISES.indexOf(exercise);
+  const [before, after] = [EXERCISES[place - 1], EXERCISES[place + 1]];
+  return (
+    <nav class="ways" aria-label="From here">
+      {before === undefined ? <span /> : <a href={`#${before.name}`}>Previous: {before.title}</a>}
+      <a href={`./lessons.html#lesson=${exercise.lesson}`}>Lesson: {LESSONS[exercise.lesson]}</a>
+      {after === undefined ? <span /> : <a href={`#${after.name}`}>Next: {after.title}</a>}
+    </nav>
   );
 }
 

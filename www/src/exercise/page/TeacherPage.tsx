@@ -1,8 +1,10 @@
 /** For teachers: all exercises with their answers and the mistakes that they know, and a sheet of those that are chosen. */
+import { spelledOut } from "../../app/words/papers";
 import "./page.css";
 import { useState } from "preact/hooks";
 import { counted } from "../../app/parts/counted";
 import { saveFile } from "../../app/parts/saveFile";
+import { TeachingHead } from "../../app/words/TeachingHead";
 import { Linked } from "../../app/words/Term";
 import { type AnyExercise, EXERCISES, KIND_WORDS, mistakesOf } from "../exercises";
 import type { FigureExercise } from "../figures/judgeFigure";
@@ -10,7 +12,6 @@ import { LESSONS } from "../judging/about";
 import { drawOf } from "../judging/judgeNumber";
 import { quantityText } from "../judging/quantity";
 import { answerOnDemo } from "./figureAnswers";
-import { PageFrame } from "./PageFrame";
 import { sheetOf } from "./sheet";
 
 const FIRST_SEED = 1;
@@ -47,7 +48,9 @@ export function TeacherPage() {
     }
   };
   return (
-    <PageFrame title="Exercises, for teachers" other={["./exercises.html", "Exercises"]}>
+    <div class="exercises">
+      <TeachingHead now="For teachers" />
+      <h1 class="visually-hidden">Exercises, for teachers</h1>
       <form class="sheet row" aria-label="Sheet" onSubmit={(event) => event.preventDefault()}>
         <label class="row">
           <span>Values no.</span>
@@ -91,7 +94,7 @@ export function TeacherPage() {
           />
         ))}
       </main>
-    </PageFrame>
+    </div>
   );
 }
 
@@ -119,7 +122,8 @@ function Known({ exercise, seed, answer, onAsk, isChosen, onChoose }: KnownProps
           <strong>{title}</strong>
         </label>
         <span class="muted">
-          {LESSONS[lesson]} · {source} · {KIND_WORDS[kind]} · <a href={`./exercises.html#${name}`}>{name}</a>
+          {LESSONS[lesson]} · {spelledOut(source)} · {KIND_WORDS[kind]} ·{" "}
+          <a href={`./exercises.html#${name}`}>{name}</a>
         </span>
       </div>
       <details>

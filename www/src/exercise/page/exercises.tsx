@@ -3,11 +3,13 @@ import "../../app/parts/base.css";
 import "../../app/parts/parts.css";
 import "./page.css";
 import { render } from "preact";
+import { restoreTextScale } from "../../app/state/textScale";
 import { defineExercise } from "../RidgelineExercise";
 import { ExercisesPage } from "./ExercisesPage";
 import { needFigure } from "./siteFigure";
 
 const fields = new URLSearchParams(location.search);
+restoreTextScale();
 defineExercise(needFigure);
 
 const root = document.getElementById("app");

@@ -1,5 +1,7 @@
 /** An exercise sheet: one HTML file that prints, without answers or with them. */
+
 import { plain } from "../../app/words/linkedText";
+import { spelledOut } from "../../app/words/papers";
 import { type AnyExercise, mistakesOf } from "../exercises";
 import { LESSONS } from "../judging/about";
 import { drawOf } from "../judging/judgeNumber";
@@ -53,7 +55,7 @@ ${sheet.exercises.map((one, i) => sectionOf(one, i, sheet)).join("\n")}
 
 function sectionOf(exercise: AnyExercise, place: number, sheet: Sheet): string {
   const { title, source, lesson } = exercise;
-  const head = `${place + 1}. ${title} <small>${LESSONS[lesson]}, ${source}</small>`;
+  const head = `${place + 1}. ${title} <small>${LESSONS[lesson]}, ${spelledOut(source)}</small>`;
   return `<section>
 <h2>${head}</h2>
 ${taskOf(exercise, sheet)}

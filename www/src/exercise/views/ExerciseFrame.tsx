@@ -1,5 +1,7 @@
 /** What stands around an exercise: its title and paper, what is to be done, and what is said of an answer. */
+
 import type { ComponentChildren } from "preact";
+import { spelledOut } from "../../app/words/papers";
 import type { About, Verdict } from "../judging/about";
 
 interface Props {
@@ -13,7 +15,7 @@ export function ExerciseFrame({ about: { title, source }, said, children }: Prop
   return (
     <section class="frame" aria-label={title}>
       <p class="title">
-        {title} <span class="muted">{source}</span>
+        {title} <span class="muted">{spelledOut(source)}</span>
       </p>
       {children}
       <div role="status">{said}</div>

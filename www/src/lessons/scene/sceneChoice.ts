@@ -2,8 +2,9 @@
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import { counted } from "../../app/parts/counted";
 import { droppedFiles } from "../../app/project/inputFiles";
-import { type LockedProject, readStoredProject, type StoredProject } from "../../app/project/storedProject";
+import { type LockedProject, readStoredProject } from "../../app/project/storedProject";
 import { loadOptions } from "../../app/settings/loadOptions";
+import type { ProjectState } from "../../app/state/project";
 import { keepScenes, type SceneInput } from "../../element/sharedScene";
 import type { InputFile } from "../../shared/calls";
 
@@ -91,7 +92,7 @@ function choose(to: Choice): void {
   keepScenes(true);
 }
 
-function inputOf({ files, options, params }: StoredProject): SceneInput {
+function inputOf({ files, options, params }: ProjectState): SceneInput {
   return {
     files,
     ...(Object.keys(params).length > 0 && { params }),

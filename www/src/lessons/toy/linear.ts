@@ -66,12 +66,6 @@ export function lineDistance(line: Vec3, at: Vec2): number {
   return Math.abs(dot(line, homogeneous(at))) / Math.hypot(line[0], line[1]);
 }
 
-/** The foot of a point on a line. */
-export function footOn(line: Vec3, at: Vec2): Vec2 {
-  const by = dot(line, homogeneous(at)) / (line[0] ** 2 + line[1] ** 2);
-  return [at[0] - by * line[0], at[1] - by * line[1]];
-}
-
 export const lineThrough = (a: Vec2, b: Vec2): Vec3 => cross(homogeneous(a), homogeneous(b));
 
 /** The part of a line inside a rectangle from (0, 0); null where it misses it. */

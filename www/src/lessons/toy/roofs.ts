@@ -19,21 +19,6 @@ export function heightOf(side: SideName, slope: number, x: number, y: number): n
   return PLAN.eave + Math.tan(slope) * inwards(side, x, y);
 }
 
-/** The side whose half-plane is the roof at a place, and how high it is. */
-export function roofAt(slopes: Slopes, x: number, y: number): { side: SideName; z: number } | null {
-  let best: { side: SideName; z: number } | null = null;
-  for (const side of SIDES) {
-    const slope = slopes[side];
-    if (slope !== null) {
-      const z = heightOf(side, slope, x, y);
-      if (best === null || z < best.z) {
-        best = { side, z };
-      }
-    }
-  }
-  return best;
-}
-
 export type Corner = readonly [x: number, y: number];
 
 /** The part of the plan that a half-plane covers: where none of the others is lower. */

@@ -34,7 +34,6 @@ export function buildGround({ about, rgba }: GroundTexture): Layer {
     polygonOffsetUnits: 2,
   });
   const mesh = new Mesh(geometry, material);
-  mesh.raycast = () => undefined;
   const object = zUpGroup();
   object.add(mesh);
   return unpicked({ object, dispose: () => disposeObject(object) });

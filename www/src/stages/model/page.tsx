@@ -36,6 +36,8 @@ export default {
         // Beside a model without photographs on it, it would only distract.
         return modelMode.value === "textured" && ground !== null ? [() => buildGround(ground), ground] : null;
       },
+      isMeasured: true,
+      isCut: true,
       warm: () => buildGround(GROUND),
     },
   },

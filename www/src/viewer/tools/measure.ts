@@ -1,5 +1,16 @@
 /** Measuring in space: points, their distance and slope, and the area of three or more. */
-import { BufferGeometry, Group, Line, LineBasicMaterial, Points, PointsMaterial, Vector3 } from "three";
+import {
+  BufferGeometry,
+  type Camera,
+  Group,
+  Line,
+  LineBasicMaterial,
+  Points,
+  PointsMaterial,
+  type Ray,
+  type Vector2,
+  Vector3,
+} from "three";
 import { PALETTE } from "../../shared/palette";
 import { disposeObject, type Layer } from "../scene/layer";
 
@@ -13,6 +24,66 @@ export interface Measured {
   slope: number | null;
   /** Area of the polygon of three or more points, square metres. */
   areaM2: number | null;
+}
+
+/** A corner of the model that points are drawn to, viewer's frame, and its standard deviations in x, y and z, metres. */
+export interface Corner {
+  at: Vector3;
+  sigma: Vector3 | null;
+}
+
+/** Where a point was taken: at a corner, on an edge, on a face or another surface, or on the level ground below all. */
+export interface Taken {
+  at: Vector3;
+  on: "corner" | "edge" | "face" | "ground";
+  /** Standard deviations; on an edge not more than this, whatever its ends have in common. */
+  sigma: Vector3 | null;
+}
+
+/** Corners and edges draw points to them within this distance, CSS pixels. */
+const REACH_PX = 10;
+/** What lies this much behind the surface that is seen is hidden by it, metres. */
+const HIDDEN_M = 0.5;
+
+/**
+ * The corner of a ring near a place of the canvas, or else the place of an edge; null where both are far or hidden.
+ *
+ * @param at in clip coordinates; `size` is that of the canvas, or of its half
+ * @param seen the surface at that place
+ */
+export function snapped(
+  {
+    at,
+    ray,
+    camera,
+    size,
+  }: { at: Vector2; ray: Ray; camera: Camera; size: { width: number; height: number } },
+  rings: readonly (readonly Corner[])[],
+  seen: Vector3 | null,
+): Taken | null {
+  const farthest = (seen?.distanceTo(ray.origin) ?? Number.POSITIVE_INFINITY) + HIDDEN_M;
+  const nearest = (places: readonly Taken[]): Taken | null => {
+    const near = places.flatMap((place) => {
+      const { x, y } = place.at.clone().project(camera);
+      const px = Math.hypot(((x - at.x) * size.width) / 2, ((y - at.y) * size.height) / 2);
+      return px <= REACH_PX && place.at.distanceTo(ray.origin) <= farthest ? [{ place, px }] : [];
+    });
+    return near.sort((a, b) => a.px - b.px)[0]?.place ?? null;
+  };
+  const corners = rings.flat().map(({ at, sigma }): Taken => ({ at, on: "corner", sigma }));
+  const edges = rings.flatMap((ring) =>
+    ring.map((a, i) => onEdge(ray, a, ring[(i + 1) % ring.length] as Corner)),
+  );
+  return nearest(corners) ?? nearest(edges);
+}
+
+/** The place of an edge that is nearest to a ray. */
+function onEdge(ray: Ray, a: Corner, b: Corner): Taken {
+  const place = new Vector3();
+  ray.distanceSqToSegment(a.at, b.at, undefined, place);
+  const share = a.at.distanceTo(place) / Math.max(1e-9, a.at.distanceTo(b.at));
+  const sigma = a.sigma === null || b.sigma === null ? null : a.sigma.clone().lerp(b.sigma, share);
+  return { at: place, on: "edge", sigma };
 }
 
 /** @param points in the viewer's frame (Y up), metres */

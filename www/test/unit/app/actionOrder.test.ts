@@ -51,6 +51,7 @@ async function pageModules() {
     scene,
     results,
     dragged,
+    list,
   ] = await Promise.all([
     import("../../../src/app/session/session"),
     import("../../../src/app/session/stageRuns"),
@@ -68,6 +69,7 @@ async function pageModules() {
     import("../../../src/app/state/scene"),
     import("../../../src/app/state/results"),
     import("../../../src/app/session/draggedParam"),
+    import("../../../src/app/session/steps"),
   ]);
   const { RULES, SAME_AGAIN } = await import("../../../src/app/session/actionRules");
   return {
@@ -87,6 +89,7 @@ async function pageModules() {
     ...scene,
     ...results,
     ...dragged,
+    ...list,
     RULES,
     SAME_AGAIN,
   };
@@ -409,5 +412,85 @@ describe("a run", () => {
     begin("own files");
     await untilIdle();
     expect(page.notices.value.map(({ severity }) => severity)).toEqual(["info"]);
+  });
+});
+
+describe("steps", () => {
+  const statuses = () => [...new Set(page.stages.value.map(({ status }) => status))];
+  const path = "matching.window_px";
+
+  it("are taken back and done again, with what was found before each", async () => {
+    await beginAnew();
+    begin("run all");
+    await untilIdle();
+    const found = page.allResults.value;
+    page.setParam(path, 11);
+    expect(statuses()).toEqual(["done", "outdated"]);
+    await page.undo();
+    // Nothing has run since: the core has it, too.
+    expect([statuses(), page.freshStages.value]).toEqual([["done"], page.stages.value.length]);
+    await page.redo();
+    begin("run all");
+    await untilIdle();
+    ran.length = 0;
+    await page.undo();
+    expect([statuses(), page.params.value]).toMatchObject([["done"], { matching: { window_px: 15 } }]);
+    expect(page.allResults.value).toEqual(found);
+    expect(page.hasResults()).toBe(false);
+    page.setParam(path, 11);
+    expect([statuses(), ran]).toEqual([["done"], []]);
+    // A file is computed by the stages that the core has of other parameters.
+    page.setParam(path, 15);
+    begin("save a file");
+    await untilIdle();
+    expect([ran.includes("segments"), ran.includes("matches")]).toEqual([false, true]);
+  });
+
+  it("over other files bring those back, and a view that was left out its result", async () => {
+    await beginAnew();
+    begin("run all");
+    await untilIdle();
+    const left = page.files.value.map(({ path }) => path).slice(0, 1);
+    void page.setRunOptions({ leftOut: left });
+    await untilIdle();
+    expect(statuses()).toEqual(["outdated"]);
+    void page.setRunOptions({ leftOut: [] });
+    await untilIdle();
+    expect(statuses()).toEqual(["done"]);
+    begin("own files");
+    await untilIdle();
+    expect(page.files.value[0]?.path).toBe("own/0.jpg");
+    void page.undo();
+    await untilIdle();
+    expect([page.files.value[0]?.path, statuses()]).toEqual(["base/0.jpg", ["done"]]);
+    void page.redo();
+    await untilIdle();
+    expect([page.files.value[0]?.path, statuses()]).toEqual(["own/0.jpg", ["waiting"]]);
+  });
+
+  it("have one for all values of a parameter that is dragged", async () => {
+    await beginAnew();
+    for (const value of [0.3, 0.4, 0.5]) {
+      page.dragParam("sweep.min_similarity", value);
+    }
+    await page.dropParam("sweep.min_similarity");
+    const [before, last] = page.steps.value.slice(-2);
+    expect([last?.about, before?.about]).toEqual(["sweep.min_similarity", "parameters"]);
+  });
+
+  it("keep results up to a limit, and drop the oldest", async () => {
+    await beginAnew();
+    begin("run all");
+    await untilIdle();
+    for (const value of [11, 13, 17]) {
+      page.addResults("model", { glb: new Uint8Array(150e6) });
+      page.setParam(path, value);
+      begin("run all");
+      await untilIdle();
+    }
+    page.setParam(path, 13);
+    expect(statuses()).toEqual(["done"]);
+    page.setParam(path, 15);
+    expect(statuses()).toEqual(["done", "outdated"]);
   });
 });

@@ -27,6 +27,12 @@ describe("splitAdvice", () => {
   });
 
   it("leaves a message without advice whole", () => {
+    expect(splitAdvice("a.zip: cannot be read: invalid Zip archive: Could not find EOCD; unpack it")).toEqual(
+      {
+        text: "a.zip: cannot be read: it is damaged or incomplete",
+        advice: "Unpack it",
+      },
+    );
     expect(splitAdvice("a.jpg: unreadable")).toEqual({ text: "a.jpg: unreadable" });
   });
 });

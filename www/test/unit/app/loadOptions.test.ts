@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { loadOptions, parseEpsg, parseHeight, parseRegion } from "../../../src/app/settings/loadOptions";
+import { systemWords } from "../../../src/app/settings/referenceSystems";
 import { NO_OPTIONS } from "../../../src/app/state/project";
 import type { Inspection } from "../../../src/shared/records";
 
@@ -65,5 +66,23 @@ describe("run options", () => {
     expect(parseEpsg(" epsg:2056 ")).toEqual({ value: 2056 });
     expect(parseEpsg("")).toEqual({ value: null });
     expect(parseEpsg("UTM 32")).toHaveProperty("error");
+  });
+});
+
+describe("a reference system", () => {
+  it("is found by its code, or by words of its name", () => {
+    expect([parseEpsg("EPSG:25832"), parseEpsg("etrs89 utm 32n"), parseEpsg("lambert-93")]).toEqual([
+      { value: 25832 },
+      { value: 25832 },
+      { value: 2154 },
+    ]);
+    expect(parseEpsg("Gauss")).toEqual({ error: expect.stringContaining("31467 Germany") });
+    expect(parseEpsg("no such")).toEqual({ error: expect.stringContaining("a code such as") });
+  });
+
+  it("is doubted where the coordinates have another size", () => {
+    expect(systemWords(25832, [691_000, 5_334_000, 520])).toBe("ETRS89 / UTM zone 32N");
+    expect(systemWords(31468, [691_000, 5_334_000, 520])).toContain("Is it another system?");
+    expect(systemWords(4326, [691_000, 5_334_000, 520])).toBe("");
   });
 });

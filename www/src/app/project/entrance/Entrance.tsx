@@ -8,7 +8,8 @@ import { createTurntable, type PhotographicGround, type Turntable } from "../../
 import { theme } from "../../state/theme";
 import { startTour } from "../../tour/steps";
 import { useFilePicker } from "../filePicker";
-import { openDemo } from "../projectActions";
+import { openDemo, reopen } from "../projectActions";
+import { forgetStoredProject, keptProjects, listKept } from "../storedProject";
 
 /** What the build wrote beside the model. */
 interface EntranceScene {
@@ -33,6 +34,7 @@ export function Entrance() {
           is sent anywhere.
         </p>
         <Doors />
+        <KeptProjects />
         <p>
           <a href="./lessons.html">Ten lessons</a>{" "}
           <span class="muted">
@@ -80,6 +82,40 @@ function Doors() {
     </div>
   );
 }
+
+/** The projects of earlier visits. */
+function KeptProjects() {
+  useEffect(() => void listKept(), []);
+  if (keptProjects.value.length === 0) {
+    return null;
+  }
+  return (
+    <section class="kept-projects" aria-label="Your last projects">
+      <h3>Your last projects</h3>
+      <ul>
+        {keptProjects.value.map(({ id, name, seen }) => (
+          <li key={id}>
+            <button type="button" class="link" onClick={() => void reopen(id)}>
+              {name}
+            </button>
+            <span class="muted numbers">{new Date(seen).toLocaleString([], SHORT)}</span>
+            <button
+              type="button"
+              class="quiet"
+              aria-label={`Delete ${name}`}
+              title="Delete from this browser"
+              onClick={() => void forgetStoredProject(id)}
+            >
+              ✕
+            </button>
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+const SHORT = { dateStyle: "medium", timeStyle: "short" } as const;
 
 function Door({ title, text, onClick }: { title: string; text: string; onClick: () => void }) {
   return (

@@ -5,10 +5,10 @@ import type { FlightPlan } from "../../../shared/records";
 import { Choice } from "../../parts/Choice";
 import { counted } from "../../parts/counted";
 import { minutesText, signed } from "../../parts/numberText";
-import { TextField } from "../../parts/TextField";
+import { parseNumber, TextField } from "../../parts/TextField";
 import { isOfMemory, plannedRegion } from "../../session/flightPlanning";
 import { runAll } from "../../session/stageRuns";
-import { parseSide, parseTile } from "../../settings/loadOptions";
+import { parseTile } from "../../settings/loadOptions";
 import { isBusy, phase } from "../../state/activity";
 import { runOptions } from "../../state/project";
 import { mainResults } from "../../state/results";
@@ -224,21 +224,12 @@ const SIDES = ["West", "South", "East", "North"] as const;
 /** The region by its sides: what dragging does, by keys. */
 function RegionFields() {
   const region = plannedRegion();
-  const wrong = useSignal<number | null>(null);
-  const take = (side: number) => (text: string) => {
-    const parsed = parseSide(text);
-    if (region === null || !("value" in parsed) || parsed.value === null) {
-      wrong.value = side;
-      return false;
-    }
-    const roi: [number, number, number, number] = [...region];
-    roi[side] = parsed.value;
-    const isRight = roi[0] < roi[2] && roi[1] < roi[3];
-    wrong.value = isRight ? null : side;
-    if (isRight) {
-      void setRunOptions({ roi });
-    }
-    return isRight;
+  const parse = (side: number) => (text: string) => {
+    const parsed = parseNumber(text);
+    const roi: [number, number, number, number] = [...(region ?? [0, 0, 0, 0])];
+    roi[side] = "value" in parsed ? parsed.value : Number.NaN;
+    const isRight = region !== null && roi[0] < roi[2] && roi[1] < roi[3];
+    return isRight ? { value: roi } : { error: "West is less than east, south less than north" };
   };
   return (
     <fieldset class="region-fields">
@@ -250,14 +241,11 @@ function RegionFields() {
             id={`region-${side}`}
             inputMode="decimal"
             value={String(region?.[side] ?? "")}
-            isInvalid={wrong.value === side}
-            onTake={take(side)}
+            parse={parse(side)}
+            onValue={(roi) => void setRunOptions({ roi })}
           />
         </div>
       ))}
-      <p id="region-note" class="error note" role="status">
-        {wrong.value !== null && "West is less than east, south less than north"}
-      </p>
       {runOptions.value.roi !== null && (
         <p class="row">
           <button type="button" onClick={() => void setRunOptions({ roi: null })}>
@@ -280,7 +268,6 @@ const REDUCTIONS = [1, 2, 3, 4, 6, 8] as const;
 
 function SizeFields() {
   const { tileM, reduction } = runOptions.value;
-  const wrong = useSignal("");
   return (
     <div class="size-fields">
       <div>
@@ -289,20 +276,9 @@ function SizeFields() {
           id="plan-tile"
           inputMode="decimal"
           value={String(tileM ?? "")}
-          isInvalid={wrong.value !== ""}
-          onTake={(text) => {
-            const parsed = parseTile(text);
-            wrong.value = "error" in parsed ? parsed.error : "";
-            const isRight = "value" in parsed && parsed.value !== null;
-            if (isRight) {
-              void setRunOptions({ tileM: parsed.value });
-            }
-            return isRight;
-          }}
+          parse={(text) => (text.trim() === "" ? parseNumber(text) : parseTile(text))}
+          onValue={(tileM) => void setRunOptions({ tileM })}
         />
-        <span id="plan-tile-note" class="error note">
-          {wrong.value}
-        </span>
       </div>
       <div>
         <label for="plan-reduction">Photographs used at</label>

@@ -1,7 +1,7 @@
 /** A length that a person knows sets the scale: of the flight, or between two places that are marked in photographs. */
 import { useSignal } from "@preact/signals";
 import type { MeasuredLength, OrientationReport } from "../../../shared/orientation";
-import { TextField } from "../../parts/TextField";
+import { parsePositive, TextField } from "../../parts/TextField";
 import { MeasureFigure } from "./MeasureFigure";
 import { block, setScale } from "./orientation";
 import { nameOf } from "./photographPicture";
@@ -13,17 +13,13 @@ const HEIGHT = "height";
 export function KnownLength({ report }: { report: OrientationReport }) {
   const what = useSignal(report.is_metric ? MARKED : HEIGHT);
   const marked = useSignal<MeasuredLength | null>(null);
-  const isInvalid = useSignal(false);
   // Control points give the scale, so that a length can only be compared with it.
   const isFixed = report.control.length > 0;
   const measured = measuredNow(what.value, marked.value);
-  const take = (text: string) => {
-    const metres = Number(text.replace(",", "."));
-    isInvalid.value = !(Number.isFinite(metres) && metres > 0 && measured > 0);
-    if (!isInvalid.value) {
-      void setScale(measured, metres, wordsOf(what.value));
-    }
-    return !isInvalid.value;
+  const parse = (text: string) => {
+    const parsed = parsePositive(text);
+    const isLength = "value" in parsed && parsed.value !== null && measured > 0;
+    return isLength ? parsed : { error: "A number above 0, of a length that is measured." };
   };
   return (
     <fieldset class="known-length">
@@ -51,12 +47,10 @@ export function KnownLength({ report }: { report: OrientationReport }) {
             value={measured > 0 ? measured.toFixed(2) : ""}
             placeholder="mark both ends"
             inputMode="decimal"
-            isInvalid={isInvalid.value}
-            onTake={take}
+            parse={parse}
+            onValue={(metres) => void setScale(measured, metres ?? 0, wordsOf(what.value))}
+            hint="Enter takes it."
           />
-          <span id="known-length-note" class="muted">
-            {isInvalid.value ? "A number above 0, of a length that is measured." : "Enter takes it."}
-          </span>
         </>
       )}
       {what.value === MARKED && (

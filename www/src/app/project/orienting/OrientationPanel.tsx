@@ -1,8 +1,7 @@
 /** Photographs on their way to an orientation: the steps, the block in space as it grows, and what came of it. */
 import "./orienting.css";
-import { useSignal } from "@preact/signals";
 import { counted } from "../../parts/counted";
-import { TextField } from "../../parts/TextField";
+import { parsePositive, TextField } from "../../parts/TextField";
 import { cancel } from "../../session/session";
 import { isBusy } from "../../state/activity";
 import { OrientationResult } from "./OrientationResult";
@@ -87,15 +86,6 @@ export function OrientationPanel() {
 
 /** After a cancelled or failed run. */
 function Again() {
-  const isInvalid = useSignal(false);
-  const take = (text: string) => {
-    const px = text.trim() === "" ? null : Number(text);
-    isInvalid.value = px !== null && !(Number.isFinite(px) && px > 0);
-    if (!isInvalid.value) {
-      stateFocal(px);
-    }
-    return !isInvalid.value;
-  };
   return (
     <p class="row">
       <button type="button" class="primary" disabled={isBusy.value} onClick={() => void computeOrientation()}>
@@ -107,12 +97,9 @@ function Again() {
         value={statedFocalPx.value === null ? "" : String(statedFocalPx.value)}
         placeholder="from the photographs"
         inputMode="decimal"
-        isInvalid={isInvalid.value}
-        onTake={take}
+        parse={parsePositive}
+        onValue={stateFocal}
       />
-      <span id="stated-focal-note" class="muted">
-        {isInvalid.value ? "A number above 0." : ""}
-      </span>
     </p>
   );
 }

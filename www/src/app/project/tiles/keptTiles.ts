@@ -1,7 +1,8 @@
 /** The outcomes of tiles, kept in this browser (IndexedDB) one by one: a run goes on from them after a reload. */
 
-const DATABASE = "ridgeline-tiles";
-const STORE = "outcomes";
+import { storeOf } from "./database";
+
+const request = storeOf("ridgeline-tiles", "outcomes");
 
 /** Outcomes of one plan, those of its first looks by the numbers below 0; those of another one are forgotten when the first is kept. */
 export class KeptTiles {
@@ -74,23 +75,4 @@ function tilesOf(numbers: readonly number[]): Set<number> {
 
 export async function forgetKeptTiles(): Promise<void> {
   await request("readwrite", (store) => store.clear()).catch(() => undefined);
-}
-
-function request<T>(mode: IDBTransactionMode, act: (store: IDBObjectStore) => IDBRequest): Promise<T> {
-  return new Promise((resolve, reject) => {
-    const opening = indexedDB.open(DATABASE, 1);
-    opening.onupgradeneeded = () => opening.result.createObjectStore(STORE);
-    opening.onerror = () => reject(opening.error);
-    opening.onsuccess = () => {
-      const database = opening.result;
-      const transaction = database.transaction(STORE, mode);
-      const acting = act(transaction.objectStore(STORE));
-      const end = (settle: () => void) => () => {
-        database.close();
-        settle();
-      };
-      transaction.oncomplete = end(() => resolve(acting.result as T));
-      transaction.onabort = end(() => reject(transaction.error));
-    };
-  });
 }

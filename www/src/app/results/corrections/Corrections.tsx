@@ -6,7 +6,8 @@ import { facetOf } from "../../../kinds/kinds";
 import type { Correction, Facet, NotApplied, Vec3 } from "../../../shared/records";
 import { counted } from "../../parts/counted";
 import { saveFile } from "../../parts/saveFile";
-import { TextField } from "../../parts/TextField";
+import { parseNumber, TextField } from "../../parts/TextField";
+import { redo, undo } from "../../project/projectActions";
 import { isBusy } from "../../state/activity";
 import { notify } from "../../state/notices";
 import { mainResults } from "../../state/results";
@@ -26,7 +27,7 @@ import {
   ringOf,
   sum,
 } from "./facetGeometry";
-import { canRedo, canUndo, change, correct, corrections, redo, remove, undo } from "./history";
+import { canRedo, canUndo, change, correct, corrections, remove } from "./history";
 
 /** What is done with the next facet that is selected. */
 interface Armed {
@@ -394,38 +395,29 @@ function Drawn({ facets, index }: { facets: readonly Facet[]; index: number | nu
   );
 }
 
-function NumberField(props: {
+function NumberField({ name, unit, value, onTake }: NumberFieldProps) {
+  const id = `correct-${name.toLowerCase().replaceAll(" ", "-")}`;
+  return (
+    <div class="field">
+      <label for={id}>{name}</label>
+      <TextField
+        id={id}
+        inputMode="decimal"
+        value={value}
+        parse={parseNumber}
+        onValue={(next) => void onTake(next)}
+      >
+        <span class="unit muted">{unit}</span>
+      </TextField>
+    </div>
+  );
+}
+
+interface NumberFieldProps {
   name: string;
   unit: string;
   value: string;
   onTake: (value: number) => Promise<void>;
-}) {
-  const [error, setError] = useState("");
-  const id = `correct-${props.name.toLowerCase().replaceAll(" ", "-")}`;
-  return (
-    <div class="field">
-      <label for={id}>{props.name}</label>
-      <TextField
-        id={id}
-        inputMode="decimal"
-        value={props.value}
-        isInvalid={error !== ""}
-        onTake={(text) => {
-          const value = Number(text.trim().replace(",", "."));
-          const isNumber = text.trim() !== "" && Number.isFinite(value);
-          setError(isNumber ? "" : "A number is expected");
-          if (isNumber) {
-            void props.onTake(value);
-          }
-          return isNumber;
-        }}
-      />
-      <span class="unit muted">{props.unit}</span>
-      <span id={`${id}-note`} class="error note">
-        {error}
-      </span>
-    </div>
-  );
 }
 
 /** The corrections so far, each with its state; saved, and opened again. */
@@ -498,7 +490,7 @@ async function openCorrections(file: File): Promise<void> {
     });
     return;
   }
-  await change(list, null);
+  await change(list, `${file.name} opened`);
 }
 
 /** A list of things that name their correction; null for anything else. */

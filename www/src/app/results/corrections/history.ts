@@ -1,13 +1,15 @@
-/** The corrections of the model, done and undone: data among the parameters, which the core applies as a stage. */
-import { computed, type ReadonlySignal, signal } from "@preact/signals";
+/** The corrections of the model: data among the parameters, which the core applies as a stage; a step each. */
+import { computed, type ReadonlySignal } from "@preact/signals";
 import type { ParamGroup } from "../../../shared/paramTree";
 import type { Correction, Vec3 } from "../../../shared/records";
 import { runTo, setParam } from "../../session/stageRuns";
+import { type Step, steps, undoneSteps } from "../../session/steps";
 import { params } from "../../state/parameters";
 import { mainResults } from "../../state/results";
 import { scene } from "../../state/scene";
 import { stages } from "../../state/stages";
 import { select } from "../../state/viewState";
+import { correctionWords } from "./correctionWords";
 import { difference, facetAt } from "./facetGeometry";
 
 type List = readonly Correction[];
@@ -16,55 +18,24 @@ export const corrections: ReadonlySignal<List> = computed(
   () => (params.value["corrections"] ?? []) as unknown as List,
 );
 
-/** The lists before the present one and after it, and which one they are about: another project has another past. */
-const past = signal<readonly List[]>([]);
-const future = signal<readonly List[]>([]);
-let about: string | null = null;
-
-const isPresent = (list: List) => about === JSON.stringify(list);
-export const canUndo = computed(() => past.value.length > 0 && isPresent(corrections.value));
-export const canRedo = computed(() => future.value.length > 0 && isPresent(corrections.value));
+const isCorrection = (step: Step | undefined) => step?.about === "corrections";
+/** Whether the last step, or the one that was taken back last, is a correction. */
+export const canUndo = computed(() => isCorrection(steps.value.at(-1)));
+export const canRedo = computed(() => isCorrection(undoneSteps.value.at(-1)));
 
 /** Adds a correction, and looks on at the facet at a place, world frame. */
 export function correct(correction: Correction, lookAt: Vec3 | null = null): Promise<void> {
-  return change([...corrections.value, correction], lookAt);
+  return change([...corrections.value, correction], correctionWords(correction), lookAt);
 }
 
 export function remove(index: number): Promise<void> {
-  return change(
-    corrections.value.filter((_, i) => i !== index),
-    null,
-  );
+  const left = corrections.value.filter((_, i) => i !== index);
+  return change(left, `Correction ${index + 1} removed`);
 }
 
-/** Takes another list in place of the present one. */
-export function change(next: List, lookAt: Vec3 | null): Promise<void> {
-  past.value = [...(canUndo.value ? past.value : []), corrections.value];
-  future.value = [];
-  return apply(next, lookAt);
-}
-
-export async function undo(): Promise<void> {
-  const before = past.value.at(-1);
-  if (canUndo.value && before !== undefined) {
-    past.value = past.value.slice(0, -1);
-    future.value = [...future.value, corrections.value];
-    await apply(before, null);
-  }
-}
-
-export async function redo(): Promise<void> {
-  const after = future.value.at(-1);
-  if (canRedo.value && after !== undefined) {
-    future.value = future.value.slice(0, -1);
-    past.value = [...past.value, corrections.value];
-    await apply(after, null);
-  }
-}
-
-async function apply(next: List, lookAt: Vec3 | null): Promise<void> {
-  about = JSON.stringify(next);
-  setParam("corrections", next as unknown as ParamGroup);
+/** Takes another list in place of the present one, as a step with these words. */
+export async function change(next: List, what: string, lookAt: Vec3 | null = null): Promise<void> {
+  setParam("corrections", next as unknown as ParamGroup, what);
   const last = stages.value.at(-1);
   if (last !== undefined) {
     await runTo(last.name);

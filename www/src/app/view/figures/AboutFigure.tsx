@@ -2,6 +2,7 @@
 import "./figures.css";
 import { MathMl } from "../../words/Formula";
 import { letterOf, linesOf } from "../../words/formula";
+import { spelledOut } from "../../words/papers";
 import { Linked } from "../../words/Term";
 
 export interface FigureText {
@@ -30,9 +31,4 @@ export function AboutFigure({ of: { title, source, text, equation, hint } }: { o
       <p class="muted">{hint}</p>
     </details>
   );
-}
-
-/** Where a paper is first met, it has its authors. */
-function spelledOut(source: string): string {
-  return source.replace("B99", "Baillard et al. 1999,").replace("W96", "Wiman, Axelsson 1996,");
 }

@@ -18,9 +18,10 @@ export function ResultActions() {
     return <Running />;
   }
   const hasModel = exportNames.value.includes("model.glb");
+  const isOutdated = stages.value.some(({ status }) => status !== "done");
   return (
     <div class="actions">
-      {canRun(stages.value.length) && (
+      {isOutdated && canRun(stages.value.length) && (
         <button type="button" class={hasModel ? "" : "primary"} onClick={() => void runAll()}>
           {hasModel ? "Reconstruct again" : "Reconstruct"}
         </button>

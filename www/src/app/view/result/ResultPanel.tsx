@@ -25,7 +25,7 @@ function Buildings() {
     return (
       <section class="panel">
         <h2>Buildings</h2>
-        <p class="muted">The buildings of tiles are told of in the report and in the files.</p>
+        <p class="muted">The model is joined from tiles: the report and the files list its buildings.</p>
       </section>
     );
   }
@@ -40,6 +40,11 @@ function Buildings() {
         </span>
       </h2>
       {all.length === 0 && <p class="muted">No building was found in these photographs.</p>}
+      {all.length > 0 && (
+        <p class="muted">
+          Numbers begin with 0, and are the same in the report and in all files, where a face is called facet.
+        </p>
+      )}
       <ul class="buildings">
         {all.map((building) => (
           <BuildingRow key={building.number} building={building} />

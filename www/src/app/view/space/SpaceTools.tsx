@@ -2,12 +2,15 @@
 import { signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import type { Measured } from "../../../viewer/tools/measure";
+import { yUp, zUp } from "../../../viewer/scene/frame";
+import type { Corner, Measured, Taken } from "../../../viewer/tools/measure";
 import type { Section } from "../../../viewer/tools/section";
 import type { Viewer } from "../../../viewer/viewer";
 import { Menu } from "../../parts/Menu";
 import { saveFile } from "../../parts/saveFile";
 import { isCorrecting, takePoint } from "../../results/corrections/drawn";
+import { mainResults } from "../../state/results";
+import { scene } from "../../state/scene";
 import { tab } from "../../state/viewState";
 import { isPhone } from "../screen/layout";
 import { FlyTo, lookThrough, Photograph, throughView } from "./Photograph";
@@ -17,7 +20,7 @@ import { SectionChart } from "./SectionChart";
 type Tool = "measure" | "section" | "draw";
 
 const tool = signal<Tool | null>(null);
-const measured = signal<Measured | null>(null);
+const measured = signal<{ found: Measured; last: Taken } | null>(null);
 const section = signal<Section | null>(null);
 
 interface Props {
@@ -35,7 +38,8 @@ export function SpaceTools({ viewer, onFit, children }: Props) {
     measured.value = null;
     section.value = null;
     tool.value = isOn ? null : next;
-    viewer?.measure(isOn || next !== "measure" ? null : (found) => (measured.value = found));
+    const isMeasuring = !isOn && next === "measure";
+    viewer?.measure(isMeasuring ? (found, last) => (measured.value = { found, last }) : null, corners());
     viewer?.section(isOn || next !== "section" ? null : (found) => (section.value = found));
     if (!isOn && next === "draw") {
       viewer?.draw3d(takePoint);
@@ -101,7 +105,7 @@ export function SpaceTools({ viewer, onFit, children }: Props) {
         {isPhone.value ? <Menu title="Tools">{tools}</Menu> : tools}
       </div>
       {tool.value !== null && <Crosshair viewer={viewer} />}
-      {tool.value === "measure" && <Reading measured={measured.value} />}
+      {tool.value === "measure" && <Reading />}
       {tool.value === "draw" && (
         <p class="reading" role="status">
           Click points of the model; dots can be dragged.
@@ -184,23 +188,56 @@ function Profile({ viewer }: { viewer: Viewer | null }) {
   );
 }
 
-function Reading({ measured: found }: { measured: Measured | null }) {
-  if (found === null || found.distanceM === null || found.slope === null) {
+/** The rings of all facets, and how well their corners are known: the outer one first, as in the uncertainty. */
+function corners(): Corner[][] {
+  return (mainResults.peek().facets ?? []).flatMap(({ outer, holes, uncertainty }) => {
+    let next = 0;
+    return [outer, ...holes].map((ring) =>
+      ring.map((at) => {
+        const known = uncertainty?.corners[next];
+        next += 1;
+        return { at: yUp(at), sigma: known === undefined ? null : yUp(known.sigma_m) };
+      }),
+    );
+  });
+}
+
+const PLACE_WORDS: Readonly<Record<Taken["on"], string>> = {
+  corner: "corner",
+  edge: "edge",
+  face: "surface",
+  ground: "lowest level of the model",
+};
+
+function Reading() {
+  if (measured.value === null) {
     return (
       <p class="reading" role="status">
-        {found === null || found.points === 0
-          ? "Click two points, or more for an area. By keyboard: Tab to the crosshair."
-          : "One more point."}
+        Click a point for its coordinates, two for their distance, more for an area; corners and edges draw
+        the point to them. By keyboard: Tab to the crosshair. Escape ends it.
       </p>
     );
   }
+  const { found, last } = measured.value;
+  const origin = scene.value?.origin ?? [0, 0, 0];
+  const sigma = last.sigma === null ? null : zUp(last.sigma).map(Math.abs);
+  const place = zUp(last.at).map((x, axis) => {
+    const known = sigma === null ? "" : ` ± ${(sigma[axis] ?? 0).toFixed(2)}`;
+    return `${(x + (origin[axis] ?? 0)).toFixed(2)}${known} m`;
+  });
   const rows = [
-    ["Distance", `${found.distanceM.toFixed(2)} m`],
-    ["In plan", `${(found.planM ?? 0).toFixed(2)} m`],
-    ["Height", `${(found.heightM ?? 0).toFixed(2)} m`],
-    ["Slope", `${((found.slope * 180) / Math.PI).toFixed(1)}°`],
-    ...(found.areaM2 === null ? [] : [["Area", `${found.areaM2.toFixed(2)} m²`]]),
-  ] as const;
+    ["Taken at", PLACE_WORDS[last.on]],
+    ...["East", "North", "Height"].map((name, axis) => [name, place[axis] ?? ""] as const),
+    ...(found.distanceM === null
+      ? []
+      : ([
+          ["Distance", `${found.distanceM.toFixed(2)} m`],
+          ["In plan", `${(found.planM ?? 0).toFixed(2)} m`],
+          ["Difference in height", `${(found.heightM ?? 0).toFixed(2)} m`],
+          ["Slope", `${(((found.slope ?? 0) * 180) / Math.PI).toFixed(1)}°`],
+        ] as const)),
+    ...(found.areaM2 === null ? [] : [["Area", `${found.areaM2.toFixed(2)} m²`] as const]),
+  ];
   return (
     <dl class="reading facts" aria-live="polite" data-testid="reading">
       {rows.map(([name, value]) => (

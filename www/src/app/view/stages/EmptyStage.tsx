@@ -26,8 +26,10 @@ export function EmptyStage() {
   }
   return (
     <div class="empty">
-      <p>No oriented views yet.</p>
-      <p class="muted">Add photographs with their orientation to the project, or begin with the example.</p>
+      <p>Nothing to reconstruct yet.</p>
+      <p class="muted">
+        Add three or more photographs, with their orientation or without, or begin with the example.
+      </p>
       <p class="row">
         <button type="button" class="primary" onClick={() => void openDemo()}>
           Reconstruct the example
