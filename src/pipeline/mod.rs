@@ -299,7 +299,12 @@ impl Run {
         };
         let mut files = export_all(&borrowed, &self.params.texture);
         let known = report::KnownReport {
-            terrain: (self.results.ground.as_ref()).and_then(|ground| ground.terrain()),
+            terrain: (self.results.ground.as_ref())
+                .and_then(|ground| ground.terrain())
+                .map(|compared| report::TerrainReport {
+                    compared,
+                    contradicted_below: stages::other_ground(&self.scene, &self.results),
+                }),
             footprints: (self.results.facets.as_ref())
                 .and_then(|found| found.trace.facets.register.as_ref()),
             point_cloud: (self.results.dense.as_ref())
