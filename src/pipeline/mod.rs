@@ -50,6 +50,7 @@ use crate::planes::objectspace::{image_segments, world_lines};
 use crate::results::export;
 use crate::results::export::export_all;
 use crate::results::texture::TexturedModel;
+use crate::roofs::buildings::{OtherGround, other_ground};
 use crate::roofs::model::{BuildingWalls, RoofModel};
 
 /// Segments of all views, and 3D lines.
@@ -67,6 +68,15 @@ impl Results {
         let refined = self.refinement.as_ref().map(|r| &r.value);
         let lines = refined.or(self.facets.as_ref().map(|r| &r.value));
         lines.or(self.rectangles.as_ref().map(|r| &r.value))
+    }
+
+    /// The buildings that do not stand on the ground of the terrain model that counted.
+    fn other_ground(&self, scene: &Scene) -> Vec<OtherGround> {
+        let model = self.roof_model().zip(self.ground.as_ref());
+        let known = model.zip(scene.known.terrain.as_ref());
+        known.map_or_else(Vec::new, |((model, ground), terrain)| {
+            other_ground(model, ground, terrain)
+        })
     }
 
     /// What speaks for each matched line, and against it, as its views show it: in the order of
@@ -303,7 +313,7 @@ impl Run {
                 .and_then(|ground| ground.terrain())
                 .map(|compared| report::TerrainReport {
                     compared,
-                    contradicted_below: stages::other_ground(&self.scene, &self.results),
+                    contradicted_below: self.results.other_ground(&self.scene),
                 }),
             footprints: (self.results.facets.as_ref())
                 .and_then(|found| found.trace.facets.register.as_ref()),

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::stages::{OtherGround, Stage};
+use super::stages::Stage;
 use super::summary::StageSummary;
 use crate::base::params::Params;
 use crate::orienting::known::KnownComparison;
 use crate::orienting::scene::{Scene, ViewAdjustment, ViewShift};
 use crate::planes::dense::CloudComparison;
-use crate::roofs::buildings::UncoveredRoof;
+use crate::roofs::buildings::{OtherGround, UncoveredRoof};
 use crate::roofs::facets::RegisterTrace;
 
 /// The content of `report.json`.

@@ -27,7 +27,6 @@ mod objectspace;
 mod refinement;
 mod segments;
 
-pub(super) use model::{OtherGround, other_ground};
 use serde::de::DeserializeOwned;
 use serde::{Serialize, Serializer};
 
