@@ -51,6 +51,7 @@ use crate::planes::terrain::Ground;
 use crate::results::export;
 use crate::results::export::export_all;
 use crate::results::texture::TexturedModel;
+use crate::roofs::buildings::{OtherGround, other_ground};
 use crate::roofs::model::{BuildingWalls, RoofModel};
 
 /// Segments of all views, and 3D lines.
@@ -68,6 +69,15 @@ impl Results {
         let refined = self.refinement.as_ref().map(|r| &r.value);
         let lines = refined.or(self.facets.as_ref().map(|r| &r.value));
         lines.or(self.rectangles.as_ref().map(|r| &r.value))
+    }
+
+    /// The buildings that do not stand on the ground of the terrain model that counted.
+    fn other_ground(&self, scene: &Scene) -> Vec<OtherGround> {
+        let model = self.roof_model().zip(self.ground.as_ref());
+        let known = model.zip(scene.known.terrain.as_ref());
+        known.map_or_else(Vec::new, |((model, ground), terrain)| {
+            other_ground(model, ground, terrain)
+        })
     }
 
     /// What speaks for each matched line, and against it, as its views show it: in the order of
@@ -312,7 +322,12 @@ impl Run {
         };
         let mut files = export_all(&borrowed, &self.params.texture);
         let known = report::KnownReport {
-            terrain: (self.results.ground.as_ref()).and_then(|ground| ground.terrain()),
+            terrain: (self.results.ground.as_ref())
+                .and_then(|ground| ground.terrain())
+                .map(|compared| report::TerrainReport {
+                    compared,
+                    contradicted_below: self.results.other_ground(&self.scene),
+                }),
             footprints: (self.results.facets.as_ref())
                 .and_then(|found| found.trace.facets.register.as_ref()),
             point_cloud: (self.results.dense.as_ref())

@@ -10,7 +10,7 @@ use crate::base::params::Params;
 use crate::orienting::known::KnownComparison;
 use crate::orienting::scene::{Scene, ViewAdjustment, ViewShift};
 use crate::planes::dense::CloudComparison;
-use crate::roofs::buildings::UncoveredRoof;
+use crate::roofs::buildings::{OtherGround, UncoveredRoof};
 use crate::roofs::facets::RegisterTrace;
 
 /// The content of `report.json`.
@@ -36,14 +36,23 @@ struct Report<'a> {
 }
 
 /// What was known beforehand, compared with the images.
-#[derive(Clone, Copy, Default, Serialize)]
+#[derive(Clone, Default, Serialize)]
 pub(crate) struct KnownReport<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub terrain: Option<&'a KnownComparison>,
+    pub terrain: Option<TerrainReport<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub footprints: Option<&'a RegisterTrace>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub point_cloud: Option<&'a CloudComparison>,
+}
+
+/// A terrain model compared with the images.
+#[derive(Clone, Serialize)]
+pub(crate) struct TerrainReport<'a> {
+    #[serde(flatten)]
+    pub compared: &'a KnownComparison,
+    /// The buildings below which the images contradict it.
+    pub contradicted_below: Vec<OtherGround>,
 }
 
 impl KnownReport<'_> {

@@ -283,7 +283,8 @@ pub(super) fn divided(
     if options.apply_fix {
         return Err(Error::Scene {
             problem: "tiles take the orientation as it is".to_owned(),
-            advice: "correct it first (without tiles, --apply-fix names the mistake)".to_owned(),
+            advice: "correct the orientation file, or work off all at once (without --tile)"
+                .to_owned(),
         });
     }
     source.hold(&|files| files_of_settling(files, options))?;

@@ -124,6 +124,31 @@ fn a_surface_model_is_no_terrain() {
     house_is(&found, |_, _| truth.ground_z);
 }
 
+#[test]
+fn a_building_under_which_a_terrain_is_wrong_stands_on_the_ground_of_the_images_and_is_named() {
+    let (scene, truth) = gable_scene(SIZE_PX);
+    let height = |x: f64, y: f64| truth.ground_z + 0.02 * x - 0.01 * y;
+    let is_inside = |x: f64, y: f64| {
+        let holds = |ring: &[Point3<f64>]| contains(plan_sides(ring), &Point2::new(x, y));
+        truth.facets.iter().any(|(_, ring)| holds(ring))
+    };
+    let pit = grid(|x, y| height(x, y) - if is_inside(x, y) { 3.0 } else { 0.0 });
+    let mut run = Run::new(loaded(&scene, Some(("dtm.asc", pit))), Params::default());
+    run.run_all();
+    assert_eq!(comparison(&run).verdict, KnownVerdict::Used);
+    house_is(&run, |_, _| truth.ground_z);
+    let said = "the images contradict dtm.asc below building-0 (";
+    let mut warnings = run.summaries().iter().flat_map(|stage| &stage.warnings);
+    assert!(warnings.any(|words| words.starts_with(said)));
+    let files = run.files(&[]);
+    let report = files.iter().find(|(name, _)| name == "report.json");
+    let report: serde_json::Value = serde_json::from_slice(&report.unwrap().1).unwrap();
+    let below = &report["known"]["terrain"]["contradicted_below"][0];
+    assert_eq!(below["building"], "building-0");
+    let up_m = below["up_m"].as_f64().unwrap();
+    assert!((up_m - 3.0).abs() < 1.0, "{up_m}");
+}
+
 /// By GDAL and LASzip: strips and tiles, all predictors, whole and floating-point numbers, both
 /// byte orders.
 #[test]

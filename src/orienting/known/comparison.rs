@@ -36,6 +36,9 @@ pub struct KnownComparison {
     /// From it to what the images show, east, north and up, metres; absent where they show too
     /// little, and 0 where the thing says nothing.
     pub shift_m: Option<[f64; 3]>,
+    /// Of a terrain model: middles of the squares of 5 m around roofs where the images contradict
+    /// it and count instead, metres, local frame.
+    pub contradicted_at: Vec<[f64; 2]>,
 }
 
 /// What was done with a thing that is known.

@@ -176,8 +176,8 @@ impl TakenGroup {
         let taken = self.group.as_ref().filter(|_| !self.was_asked_for)?;
         let others = self.groups.iter().filter(|group| *group != taken);
         Some(format!(
-            "{label} holds {} orientations: {taken} was taken, not {} (the choice of the orientation, --orientation, \
-             takes their names)",
+            "{label} holds {} orientations: {taken} was taken, not {} (--orientation takes their \
+             names)",
             self.groups.len(),
             listed(others)
         ))

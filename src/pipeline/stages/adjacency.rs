@@ -35,7 +35,7 @@ impl StageDefinition for Adjacency {
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
         let verified = found.value.iter().filter(|p| p.is_verified()).count();
         let in_images = found.trace.graphs.iter().map(|g| g.corners.len()).sum();
-        let none = "no corner of the images was found again in two other views";
+        let none = "no corner of the images was found again in two other views; try method lines";
         let is_empty = in_images > 0 && found.trace.corners.is_empty();
         Findings {
             counts: vec![

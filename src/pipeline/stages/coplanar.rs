@@ -34,7 +34,7 @@ impl StageDefinition for Coplanar {
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
         let verified = found.value.iter().filter(|set| set.is_verified()).count();
-        let none = "no two lines span a plane that the views agree on";
+        let none = "no two lines span a plane that the views agree on; try method lines";
         let is_empty = !found.trace.sets.is_empty() && verified == 0;
         Findings {
             counts: vec![("sets", found.value.len()), ("verified sets", verified)],

@@ -36,7 +36,8 @@ impl StageDefinition for Facets {
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
         let facets = &found.value.facets;
-        let none = "no roof facet was found: the model is empty";
+        let none = "no roof was found: the model is empty; check that three or more photographs show one \
+                    whole, and the height of the ground where it was stated";
         Findings {
             counts: vec![
                 ("facets", facets.len()),

@@ -31,8 +31,8 @@ impl StageDefinition for HalfPlanes {
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
         let was_swept = !found.trace.sides.is_empty();
         let correlations = usize::try_from(found.trace.correlations).unwrap_or(usize::MAX);
-        let none = "no half-plane was accepted; the surfaces may have too little texture: try a \
-                    lower sweep.min_similarity";
+        let none = "no line was found to be the edge of a roof face; the faces may show too \
+                    little texture: try a lower sweep.min_similarity";
         let is_empty = found.value.is_empty();
         Findings {
             counts: vec![

@@ -34,7 +34,8 @@ impl StageDefinition for Lines {
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
-        let none = "none of the matches is long and well enough seen to give a 3D line";
+        let none = "none of the matched edges is long enough, and seen from places far enough \
+                    apart, to give a line in space; use more photographs, or larger ones";
         let is_empty = found.value.is_empty();
         Findings {
             counts: vec![("lines", found.value.len())],

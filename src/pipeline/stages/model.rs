@@ -5,7 +5,7 @@ use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
 use crate::results::texture::{TextureTrace, TexturedModel, texture_model};
-use crate::roofs::buildings::{UncoveredRoof, uncovered_roofs};
+use crate::roofs::buildings::{OtherGround, UncoveredRoof, uncovered_roofs};
 use crate::roofs::model::{BuildingWalls, RoofModel};
 use crate::roofs::walls::place_walls;
 
@@ -44,16 +44,20 @@ impl StageDefinition for Model {
         })
     }
 
-    fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {
+    fn summary(scene: &Scene, found: &Found, results: &Results) -> Findings {
         let faces = || found.value.faces.iter().flatten();
         let textured = faces().filter(|f| f.view.is_some()).count();
+        let terrain = scene.known.terrain.as_ref();
+        let other_ground = results.other_ground(scene);
         Findings {
             counts: vec![
                 ("faces", faces().count()),
                 ("textured faces", textured),
                 ("uncovered roofs", found.uncovered.len()),
             ],
-            warnings: Vec::new(),
+            warnings: (terrain.into_iter())
+                .filter_map(|terrain| OtherGround::warning(&terrain.file, &other_ground))
+                .collect(),
         }
     }
 }

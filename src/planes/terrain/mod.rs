@@ -153,9 +153,7 @@ impl Ground {
     fn blocks(&self, samples: &[Point3<f64>]) -> surface::Blocks {
         let mut heights = vec![Vec::new(); self.rises.len()];
         for p in samples {
-            let at = |x: f64, min: f64| ((x - min) / self.block_m) as usize;
-            let (c, r) = (at(p.x, self.min.x), at(p.y, self.min.y));
-            heights[r * self.columns + c].push(self.above_plane(p));
+            heights[self.block_of(p)].push(self.above_plane(p));
         }
         for block in &mut heights {
             block.sort_by(f64::total_cmp);
@@ -164,6 +162,12 @@ impl Ground {
             columns: self.columns,
             heights,
         }
+    }
+
+    fn block_of(&self, p: &Point3<f64>) -> usize {
+        let at = |x: f64, min: f64| ((x - min) / self.block_m) as usize;
+        let (c, r) = (at(p.x, self.min.x), at(p.y, self.min.y));
+        r * self.columns + c
     }
 
     fn above_plane(&self, p: &Point3<f64>) -> f64 {

@@ -66,6 +66,7 @@ pub(super) fn below(blocks: &Blocks) -> Surface {
         let cost = |h: &f64| matched * cost(heights, *h);
         choices.iter().map(cost).collect::<Vec<f64>>()
     });
+    let neighbours = neighbours(blocks.columns, blocks.heights.len());
     // Every block has a height: it costs less than none.
     let bound = costs.iter().flatten().copied().fold(0.0, f64::max) + 1.0;
     let offset = |costs: &Vec<f64>| {
@@ -74,7 +75,7 @@ pub(super) fn below(blocks: &Blocks) -> Surface {
     };
     let energy = Energy {
         unary: costs.iter().map(offset).collect(),
-        edges: neighbours(blocks),
+        edges: neighbours.clone(),
         borders: Steps(step),
     };
     let mut labelling = Labelling::new(energy, choices.len() as u32);
@@ -86,7 +87,7 @@ pub(super) fn below(blocks: &Blocks) -> Surface {
     let rim = |[k, l]: &[usize; 2]| label(*k).abs_diff(label(*l)) as f64 * step / MEAN_STEP;
     Surface {
         heights: (0..labels.len()).map(|k| choices[label(k)]).collect(),
-        energy: data + neighbours(blocks).iter().map(rim).sum::<f64>(),
+        energy: data + neighbours.iter().map(rim).sum::<f64>(),
     }
 }
 
@@ -102,8 +103,8 @@ fn cost(heights: &[f64], height: f64) -> f64 {
     (above as f64 * odds(ABOVE) + below as f64 * odds(BELOW)) / heights.len() as f64
 }
 
-fn neighbours(blocks: &Blocks) -> Vec<[usize; 2]> {
-    let (columns, count) = (blocks.columns, blocks.heights.len());
+/// Pairs of blocks that touch along a side.
+pub(super) fn neighbours(columns: usize, count: usize) -> Vec<[usize; 2]> {
     let of = |k: usize| {
         let right = (!(k + 1).is_multiple_of(columns)).then_some([k, k + 1]);
         let above = (k + columns < count).then_some([k, k + columns]);

@@ -5,6 +5,7 @@
 //! refinement   the stage: closed buildings -> refined ones
 //! refine       adjusts the wireframe of each building to the image edges of all views
 //! parapets     roofs below the parapets that bound them
+//! other_ground buildings below which the images contradict a terrain model
 //! uncovered    where a roof may be and the model has none
 //! model_lines  lines that the finished model contradicts, duplicates and new lines
 //! ```
@@ -12,6 +13,7 @@
 //! Invariant: every facet of the result belongs to one building whose solid is closed.
 
 mod model_lines;
+mod other_ground;
 mod parapets;
 mod rectangles;
 mod refine;
@@ -19,6 +21,7 @@ mod refinement;
 mod uncovered;
 
 pub use model_lines::VerifiedLines;
+pub use other_ground::{OtherGround, other_ground};
 pub use parapets::Parapet;
 pub use rectangles::roofs_of_rectangles;
 #[cfg(test)]

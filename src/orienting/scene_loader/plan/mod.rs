@@ -278,8 +278,8 @@ impl Plan {
         }
         self.warnings.push(format!(
             "the positions are in {}, heights in {} (EPSG:{code}); the model, its heights and areas \
-             are in metres, in EPSG:{metric}, which is the same plane in metres (--roi and --ground-z \
-             count there)",
+             are in metres, in EPSG:{metric}, which is the same plane in metres (a region of interest \
+             and a height of the ground count there)",
             unit.words(),
             heights.words()
         ));

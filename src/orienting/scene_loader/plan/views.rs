@@ -158,7 +158,7 @@ fn too_few(files: &[InputFile], views: &[PlannedView]) -> Error {
             if views.len() == 1 { "view" } else { "views" },
             listed(views.iter().map(|v| files[v.file].name()))
         ),
-        advice: "add images: a line match in two views cannot be verified without a third"
+        advice: "add images with their orientation: what two show alike is true only if a third shows it too"
             .to_owned(),
     }
 }

@@ -10,7 +10,7 @@ use crate::base::error::listed;
 pub(in super::super) const NOTHING_STATED: &str = "neither positions nor angles are stated";
 
 /// The way to what a usual mistake means.
-pub(in super::super) const OFFER: &str = "--apply-fix reads them so";
+pub(in super::super) const OFFER: &str = "have them read so (--apply-fix)";
 
 /// Angles that the others or the points contradict.
 pub(super) fn of_angles(found: &AnglesFinding, is_mended: bool, paths: &[&str]) -> Vec<String> {

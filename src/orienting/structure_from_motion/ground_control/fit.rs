@@ -99,7 +99,9 @@ pub(super) fn fitted(block: &Block, marks: &Marks, control: &GroundControl) -> R
     let to: Vec<Point3<f64>> = usable.iter().map(|(_, _, position)| *position).collect();
     if is_narrow(&to) {
         return Err(
-            "the ground control points lie on one line, which leaves the turn about it open".into(),
+            "the ground control points lie on one line, about which the block may turn: add one \
+             beside it"
+                .into(),
         );
     }
     let from: Vec<Point3<f64>> = usable.iter().map(|(_, seen, _)| seen.place).collect();
@@ -108,7 +110,7 @@ pub(super) fn fitted(block: &Block, marks: &Marks, control: &GroundControl) -> R
         .map(|(_, seen, _)| (seen.covariance.trace() / 3.0).sqrt())
         .collect();
     let (similarity, sigmas) = robust_similarity(&from, &to, &of_images)
-        .ok_or("the ground control points do not differ in the photographs")?;
+        .ok_or("the photographs show all ground control points at one place: check their marks")?;
     let lengths = |i: usize| (similarity.point(&from[i]) - to[i]).norm() / sigmas[i];
     let mut all: Vec<f64> = (0..from.len()).map(lengths).collect();
     // A block bends by more than the noise of its keypoints: the points themselves say by how much.

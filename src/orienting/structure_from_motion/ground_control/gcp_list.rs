@@ -118,6 +118,11 @@ impl GroundControl {
             let expected = "longitude first, then latitude, or the system of the coordinates";
             return Err(list.refused(first, format!("'{stated}': {problem}"), expected));
         }
+        if system.is_other_datum() {
+            let problem = format!("'{stated}': no way from its datum to WGS84 is known here");
+            let expected = "coordinates converted to EPSG:4326 or to a map (cs2cs of PROJ does)";
+            return Err(list.refused(first, problem, expected));
+        }
         let is_on_map = matches!(system.units.plan, PlanUnit::Length(_));
         let mut control = Self {
             system: stated.to_owned(),
@@ -276,6 +281,7 @@ mod tests {
             ("EPSG:25832\n1 2 3 4 5 a.jpg p\n1 2 4 4 5 b.jpg p", "line 3"),
             ("EPSG:4326\n432100 5412300 3 4 5 a.jpg p", "longitudes"),
             ("EPSG:6318\n432100 5412300 3 4 5 a.jpg p", "longitudes"),
+            ("EPSG:4314\n8.4 49.0 3 4 5 a.jpg p", "its datum"),
             ("EPSG:4326\n-35.3 149.1 3 4 5 a.jpg p", "latitude before"),
             (
                 "+proj=lcc +units=cubit\n1 2 3 4 5 a.jpg",

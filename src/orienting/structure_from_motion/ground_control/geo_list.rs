@@ -60,12 +60,18 @@ impl GeoList {
         let list = List::new(file, text)?;
         let (system, stated) = (&list.system, list.first.1);
         let grid = system.epsg.and_then(TransverseMercator::of_epsg);
-        if matches!(system.units.plan, PlanUnit::Length(_)) && grid.is_none() {
+        let is_read = match system.units.plan {
+            PlanUnit::Length(_) => grid.is_some(),
+            PlanUnit::Angle(_) => !system.is_other_datum(),
+            PlanUnit::Geocentric => false,
+        };
+        if !is_read {
             return Ok(Self {
                 places: Vec::new(),
                 problem: Some(format!(
-                    "{file} is in {stated}, from which no way to longitude and latitude is known \
-                     here: it is not used; write it in EPSG:4326 or a zone of UTM"
+                    "{file} is in {stated}, from which no way to WGS84 is known here: it is not \
+                     used; convert its places (cs2cs of PROJ does) to EPSG:4326, or to a zone of \
+                     UTM that states its datum (WGS84 UTM 32N)"
                 )),
             });
         }
@@ -166,12 +172,21 @@ mod tests {
             (lon - 8.4).abs() < 0.01 && (lat - 49.0).abs() < 0.01,
             "{lon} {lat}"
         );
-        let feet = of("EPSG:2249\na.jpg 757900 2956038 1085\n").unwrap();
-        assert!(feet.places.is_empty());
-        assert!(
-            feet.problem
-                .is_some_and(|words| words.contains("EPSG:2249"))
-        );
+        // Lambert's projection, another datum, another ellipsoid, geocentric, a zone of any datum.
+        for system in [
+            "EPSG:2249",
+            "EPSG:2154",
+            "EPSG:4314",
+            "+proj=lcc +lat_1=44 +lat_2=49 +lon_0=3 +units=m",
+            "+proj=longlat +ellps=bessel",
+            "EPSG:4978",
+            "UTM 32N",
+        ] {
+            let list = of(&format!("{system}\na.jpg 8.4 49.0 400\n")).unwrap();
+            let problem = list.problem.unwrap_or_default();
+            let is_led = problem.contains(system) && problem.contains("EPSG:4326");
+            assert!(list.places.is_empty() && is_led, "{system}: {problem}");
+        }
         for (text, words) in [
             ("", "line 1"),
             ("a.jpg 8.4 49.0", "line 1"),

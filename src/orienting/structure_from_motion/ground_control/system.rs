@@ -2,7 +2,9 @@
 //! each thing.
 
 use crate::base::error::{Error, Result};
-use crate::orienting::orientation::{InputFile, SystemUnits, epsg_of, units_of};
+use crate::orienting::orientation::{
+    InputFile, PlanUnit, SystemUnits, epsg_of, is_geographic, units_of,
+};
 
 /// A list in its lines.
 pub(super) struct List<'t> {
@@ -81,6 +83,11 @@ impl StatedSystem {
         let epsg = epsg_of(line);
         Some(Self { epsg, units })
     }
+
+    /// Is it longitude and latitude of a datum from which no way to WGS84 is known here?
+    pub(super) fn is_other_datum(&self) -> bool {
+        matches!(self.units.plan, PlanUnit::Angle(_)) && !self.epsg.is_some_and(is_geographic)
+    }
 }
 
 /// The fields of a line, which blanks, tabs, semicolons or commas part. Where something else does,
@@ -126,7 +133,6 @@ pub(super) fn number(field: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::orienting::orientation::PlanUnit;
 
     #[test]
     fn reference_systems_in_all_their_forms() {

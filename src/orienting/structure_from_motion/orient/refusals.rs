@@ -97,9 +97,8 @@ pub(super) fn contradicted_focal(guesses: &[&Guess]) -> Option<Error> {
     let [f, likelier] = [stated, other].map(|g| g.cameras.first().map_or(0.0, |c| c.focal));
     Some(refusal(
         format!(
-            "the photographs contradict the stated focal length of {f:.0} px: their pairs are {:.0} \
-             nats likelier under {likelier:.0} px, and join under neither",
-            other.nats - stated.nats
+            "the photographs contradict the stated focal length of {f:.0} px: two by two they fit \
+             {likelier:.0} px better, and do not join under either"
         ),
         OTHER_FOCAL,
     ))

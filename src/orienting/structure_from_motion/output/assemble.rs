@@ -245,9 +245,8 @@ fn contradiction(camera: &CameraReport) -> Option<String> {
     (camera.is_stated && nats < 0.0).then(|| {
         format!(
             "the photographs contradict the stated focal length of {stated:.0} px: they say \
-             {focal:.0} +- {sigma:.0} px, which is {:.0} nats likelier and was taken; check whether \
-             the header belongs to the photographs, and whether they were cut",
-            -nats
+             {focal:.0} +- {sigma:.0} px, which was taken; check whether the header belongs to the \
+             photographs, and whether they were cut"
         )
     })
 }

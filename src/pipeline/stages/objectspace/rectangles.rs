@@ -40,7 +40,8 @@ impl StageDefinition for Rectangles {
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
-        let none = "no plane between parallel lines was accepted: the model is empty";
+        let none = "no plane between parallel lines was accepted: the model is empty; try method \
+                    lines";
         let is_empty = found.value.facets.is_empty();
         Findings {
             counts: vec![

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::{MOST_SHIFT_M, RegisterEvidence};
+use crate::base::error::listed;
 use crate::base::math::larger;
 use crate::orienting::known::{Footprint, KnownComparison, KnownShift, KnownThing, KnownVerdict};
 use crate::roofs::model::Facet;
@@ -77,24 +78,13 @@ impl RegisterTrace {
         ] {
             let names = named(verdict);
             if !names.is_empty() {
-                let (shown, more) = names.split_at(names.len().min(MOST_NAMED));
-                let more = match more.len() {
-                    0 => String::new(),
-                    count => format!(" and {count} more"),
-                };
                 let plural = if names.len() > 1 { "s" } else { "" };
-                warnings.push(format!(
-                    "{what}{plural} {}{more} of {file}",
-                    shown.join(", ")
-                ));
+                warnings.push(format!("{what}{plural} {} of {file}", listed(&names)));
             }
         }
         warnings
     }
 }
-
-/// So many names stand in a warning; all are in `report.json`.
-const MOST_NAMED: usize = 5;
 
 /// Least share of a footprint under roofs that is one building with it.
 const ROOFED: f64 = 0.5;

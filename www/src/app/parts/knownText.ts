@@ -28,15 +28,22 @@ const CONTRADICTED: Record<KnownThing, string> = {
 };
 
 /** Of a thing as a whole. */
-export function knownWords(thing: KnownThing, { verdict, belongs, shift_m }: KnownComparison): string {
+export function knownWords(
+  thing: KnownThing,
+  { verdict, belongs, shift_m, contradicted_at }: KnownComparison,
+): string {
+  const but =
+    contradicted_at.length > 0
+      ? " Around some roofs they contradict it: there the ground that they show counts."
+      : "";
   const uses = USES[thing];
   // Heights that are confirmed belong to any place that has them.
   const probability = thing === "terrain" ? "" : ` (probability ${percentText(belongs)})`;
   switch (verdict) {
     case "used":
-      return `The images confirm it${probability}: ${uses}.`;
+      return `The images confirm it${probability}: ${uses}.${but}`;
     case "moved":
-      return `The images confirm it${probability}, but it is displaced as a whole: it was moved by ${shiftWords(shift_m ?? [])} to what they show, and ${uses}.`;
+      return `The images confirm it${probability}, but it is displaced as a whole: it was moved by ${shiftWords(shift_m ?? [])} to what they show, and ${uses}.${but}`;
     case "unchecked":
       return `The images show too little to check it: ${uses} as it is.`;
     case "contradicted":

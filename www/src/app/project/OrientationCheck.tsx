@@ -4,7 +4,7 @@ import "./project.css";
 import type { Agreement, AgreementReport } from "../../shared/records";
 import { grouped } from "../parts/numberText";
 import { runOptions } from "../state/project";
-import { setRunOptions } from "./projectActions";
+import { Remedies } from "./Remedies";
 
 /** Trials beyond these explain nothing. */
 const MOST_TRIALS = 10;
@@ -23,20 +23,7 @@ export function OrientationCheck({ report }: { report: AgreementReport }) {
           </div>
         ))}
       </dl>
-      {mistake !== null && (
-        <button
-          type="button"
-          class="primary"
-          onClick={() => void setRunOptions({ applyFix: true, ignoreCheck: false })}
-        >
-          Apply the fix
-        </button>
-      )}
-      {isRefused(report) && !runOptions.value.ignoreCheck && (
-        <button type="button" onClick={() => void setRunOptions({ applyFix: false, ignoreCheck: true })}>
-          Go on nevertheless
-        </button>
-      )}
+      <Remedies asked={{ options: remediesOf(report), files: [] }} />
       {trials.length > 0 && (
         <details class="trials" open={mistake === null}>
           <summary>What was tried</summary>
@@ -65,6 +52,11 @@ export function OrientationCheck({ report }: { report: AgreementReport }) {
       )}
     </div>
   );
+}
+
+function remediesOf(report: AgreementReport): string[] {
+  const goesOn = isRefused(report) && !runOptions.value.ignoreCheck;
+  return [...(report.mistake === null ? [] : ["apply-fix"]), ...(goesOn ? ["ignore-check"] : [])];
 }
 
 /** What loading refuses unless it is told to go on. */

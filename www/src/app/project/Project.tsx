@@ -2,7 +2,7 @@
 import "./project.css";
 import type { FileReport, ImageReport } from "../../shared/records";
 import { counted } from "../parts/counted";
-import { onPage } from "../session/failureNotice";
+import { askedBy, onPage } from "../session/failureNotice";
 import { isBusy } from "../state/activity";
 import { files, inspection, isKnownKind, projectName, runOptions } from "../state/project";
 import { images, peakMb, scene } from "../state/scene";
@@ -12,6 +12,7 @@ import { useFilePicker } from "./filePicker";
 import { baseName } from "./inputFiles";
 import { OrientationCheck } from "./OrientationCheck";
 import { clearProject, deleteProject, openDemo, removeFile, setRunOptions } from "./projectActions";
+import { Remedies } from "./Remedies";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
 import { storedBytes } from "./storedProject";
 import { Thumbnail } from "./Thumbnail";
@@ -206,7 +207,9 @@ function Warnings() {
       <h3>Warnings</h3>
       <ul class="warnings">
         {[...all].map((text) => (
-          <li key={text}>{onPage(text)}</li>
+          <li key={text}>
+            {onPage(text)} <Remedies asked={askedBy(text)} />
+          </li>
         ))}
       </ul>
       <Doubts />

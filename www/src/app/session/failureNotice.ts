@@ -2,7 +2,7 @@
 import { EngineError } from "../../core/engine";
 import type { FailureKind } from "../../shared/messages";
 import type { AgreementReport } from "../../shared/records";
-import type { Notice } from "../state/notices";
+import type { Asked, Notice } from "../state/notices";
 
 const TITLES: Record<FailureKind, string> = {
   input: "This input cannot be used",
@@ -18,6 +18,13 @@ const ADVICE: Record<Exclude<FailureKind, "input">, string> = {
   memory:
     "The program was started again with your files. Run with fewer or smaller images, a region of interest, tiles, or fewer workers.",
 };
+
+/** What a message of the core asks for. */
+export function askedBy(message: string): Asked {
+  const { file } = splitFile(message);
+  const options = [...message.matchAll(/--([a-z][a-z-]*)/g)].flatMap(([, option]) => option ?? []);
+  return { options: [...new Set(options)], files: file === null ? [] : [file] };
+}
 
 /** A failure as a notice: what it is, at which stage, what to do, and what the images say of the orientation. */
 export function failureNotice(
@@ -36,7 +43,7 @@ export function failureNotice(
     title: TITLES[kind],
     text: during === null ? text : `${during}: ${text}`,
     ...(known !== undefined && !isCurable && { advice: known }),
-    ...(orientationCheck !== null && { orientationCheck }),
+    ...(orientationCheck === null ? { asked: askedBy(message) } : { orientationCheck }),
   };
 }
 
@@ -53,7 +60,10 @@ export function refusalNotices(problems: readonly string[]): Omit<Notice, "id">[
     const { file, cause } = splitFile(problem);
     causes.set(cause, [...(causes.get(cause) ?? []), ...(file === null ? [] : [file])]);
   }
-  const all = [...causes].map(([cause, named]) => failureNotice(`${listed(named)}${cause}`, "input"));
+  const all = [...causes].map(([cause, named]) => ({
+    ...failureNotice(`${listed(named)}${cause}`, "input"),
+    asked: { ...askedBy(cause), files: named },
+  }));
   const rest = all.length - MOST_REFUSALS;
   const more = {
     severity: "error" as const,
@@ -91,7 +101,7 @@ export function workerNotice(failure: Error): Omit<Notice, "id"> {
   };
 }
 
-/** The core's words without the options of the command line, which the page has fields for, and what a decoder says of damage. */
+/** The core's words without the options of the command line, for which the page has buttons and fields, and what a decoder says of damage. */
 export function onPage(text: string): string {
   return text
     .replaceAll(/\s*\([^()]*--[a-z][^()]*\)/g, "")

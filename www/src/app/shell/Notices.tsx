@@ -2,18 +2,20 @@
 
 import "./notices.css";
 import { OrientationCheck } from "../project/OrientationCheck";
+import { Remedies } from "../project/Remedies";
 import { dismiss, notices } from "../state/notices";
 
 export function Notices() {
   return (
     <div class="notices">
-      {notices.value.map(({ id, severity, title, text, advice, orientationCheck, action }) => (
+      {notices.value.map(({ id, severity, title, text, advice, orientationCheck, asked, action }) => (
         <section key={id} class={`notice ${severity}`} role={severity === "error" ? "alert" : "status"}>
           <div>
             <strong>{title}</strong>
             {text !== "" && <p>{text}</p>}
             {advice !== undefined && <p class="muted">{advice}</p>}
             {orientationCheck !== undefined && <OrientationCheck report={orientationCheck} />}
+            {asked !== undefined && <Remedies asked={asked} />}
             {action !== undefined && (
               <button type="button" onClick={action.run}>
                 {action.name}

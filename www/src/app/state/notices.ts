@@ -2,6 +2,12 @@
 import { type ReadonlySignal, signal } from "@preact/signals";
 import type { AgreementReport } from "../../shared/records";
 
+/** Options of the command line that a message of the core asks for, and the files that it is about. */
+export interface Asked {
+  options: readonly string[];
+  files: readonly string[];
+}
+
 export interface Notice {
   id: number;
   severity: "error" | "warning" | "info";
@@ -11,6 +17,8 @@ export interface Notice {
   advice?: string;
   /** What the images say of the orientation. */
   orientationCheck?: AgreementReport;
+  /** What its words ask for. */
+  asked?: Asked;
   /** Something that can be done about it. */
   action?: { name: string; run: () => void };
   /** What it is about: of the browser it stays when the project changes. Of the project, unless it is said. */

@@ -24,6 +24,7 @@ const compared = (change: Partial<KnownComparison>): KnownComparison => ({
   verdict: "used",
   belongs: 0.97,
   shift_m: [0, 0, 0],
+  contradicted_at: [],
   ...change,
 });
 
@@ -41,6 +42,7 @@ describe("what is known in words", () => {
   it("says of a terrain model whether it gives the ground", () => {
     const words = (change: Partial<KnownComparison>) => knownWords("terrain", compared(change));
     expect(words({})).toBe("The images confirm it: it gives the ground.");
+    expect(words({ contradicted_at: [[2.5, 7.5]] })).toMatch(/gives the ground\. Around some roofs/);
     expect(words({ verdict: "unchecked", shift_m: null })).toMatch(/too little.*gives the ground/);
     expect(words({ verdict: "moved", shift_m: [0, 0, 46.03] })).toMatch(/46\.03 m up/);
     expect(words({ verdict: "contradicted" })).toMatch(/surface model/);

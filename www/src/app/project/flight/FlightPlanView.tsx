@@ -6,6 +6,7 @@ import { Choice } from "../../parts/Choice";
 import { counted } from "../../parts/counted";
 import { minutesText, signed } from "../../parts/numberText";
 import { parseNumber, TextField } from "../../parts/TextField";
+import { onPage } from "../../session/failureNotice";
 import { isOfMemory, plannedRegion } from "../../session/flightPlanning";
 import { runAll } from "../../session/stageRuns";
 import { parseTile } from "../../settings/loadOptions";
@@ -127,7 +128,7 @@ function RunRow({ plan }: { plan: FlightPlan }) {
       : `Reconstruct ${counted(used.length, "tiles")}`;
   return (
     <>
-      {plan.problem !== null && <p class="plan-problem">{plan.problem}</p>}
+      {plan.problem !== null && <p class="plan-problem">{onPage(plan.problem)}</p>}
       {phase.value !== "run" && (
         <p class="row">
           <button

@@ -1,10 +1,12 @@
 /** What came of it: how exact, what the frame rests on, which photographs are missing and why; and how to go on. */
 import type { OrientationReport } from "../../../shared/orientation";
 import { grouped } from "../../parts/numberText";
+import { askedBy, onPage } from "../../session/failureNotice";
+import { isBusy } from "../../state/activity";
 import { ControlPoints } from "./ControlPoints";
 import { KnownLength } from "./KnownLength";
 import { OverlapPlan } from "./OverlapPlan";
-import { saveOrientation, saveOrientationFiles } from "./orientation";
+import { computeOrientation, saveOrientation, saveOrientationFiles } from "./orientation";
 import { nameOf } from "./photographPicture";
 
 const FILES: readonly (readonly [string, string])[] = [
@@ -30,20 +32,25 @@ export function OrientationResult({ report }: { report: OrientationReport }) {
         {camera !== undefined && <Fact name="Focal length">{focalText(camera)}</Fact>}
       </dl>
       <p>
-        <b>Frame:</b> {report.frame}.
+        <b>Frame:</b> {onPage(report.frame)}.
       </p>
       {report.warnings.map((warning) => (
         <p key={warning} class="doubt">
-          {warning.charAt(0).toUpperCase() + warning.slice(1)}.
+          {onPage(warning.charAt(0).toUpperCase() + warning.slice(1))}.
         </p>
       ))}
+      {[report.frame, ...report.warnings].some((words) => askedBy(words).options.includes("apply-fix")) && (
+        <button type="button" disabled={isBusy.value} onClick={() => void computeOrientation(true)}>
+          Apply the fix
+        </button>
+      )}
       {report.left_out.length > 0 && (
         <>
           <h3>Not oriented</h3>
           <ul class="left-out">
             {report.left_out.map(({ file, problem }) => (
               <li key={file}>
-                <b>{nameOf(file)}</b>: {problem}
+                <b>{nameOf(file)}</b>: {onPage(problem)}
               </li>
             ))}
           </ul>

@@ -93,8 +93,8 @@ function workersFor(cores: number): number {
   return Math.max(1, Math.min(cores <= 2 ? cores : cores - 1, MOST_WORKERS));
 }
 
-/** Computes the orientation of the project's photographs. */
-export async function computeOrientation(): Promise<void> {
+/** Computes the orientation of the project's photographs; with the fix lists and headers are read as they were meant. */
+export async function computeOrientation(appliesFix = false): Promise<void> {
   await actions.perform({ kind: "run", name: "orientation", phase: "run" }, async ({ signal: end }) => {
     reset();
     end.addEventListener("abort", reset);
@@ -104,7 +104,7 @@ export async function computeOrientation(): Promise<void> {
     const started = new OrientationRun();
     run = started;
     try {
-      await orientIn(started, photographs, lists);
+      await orientIn(started, photographs, lists, appliesFix);
     } catch (error) {
       // What ended it may be another run already.
       if (run === started) {
@@ -122,12 +122,13 @@ async function orientIn(
   started: OrientationRun,
   photographs: readonly InputFile[],
   lists: readonly InputFile[],
+  appliesFix: boolean,
 ): Promise<void> {
   const reach = (step: Step, fraction: number) => {
     present.progress.value = { step, fraction, photographs: photographs.length };
   };
   reach("keypoints", 0);
-  const options = statedFocalPx.value === null ? {} : { focalPx: statedFocalPx.value };
+  const options = { ...(statedFocalPx.value !== null && { focalPx: statedFocalPx.value }), appliesFix };
   const workers = workersFor(navigator.hardwareConcurrency ?? 1);
   const found = await started.orient(photographs, lists, workers, options, {
     onPhoto: (photograph, done) => {

@@ -8,6 +8,7 @@ import { STAGE_FACTS, type Tab } from "../../../stages/list";
 import { counted } from "../../parts/counted";
 import { Menu } from "../../parts/Menu";
 import { KeepResult } from "../../results/comparison/Comparison";
+import { onPage } from "../../session/failureNotice";
 import { cancel } from "../../session/session";
 import { canRun, runAll, runTo, setMethod } from "../../session/stageRuns";
 import { phase } from "../../state/activity";
@@ -134,7 +135,10 @@ function StageRow(of: { tab: Tab | null; stage: StageState | null; line: number 
   );
   const shared = {
     style: place,
-    title: stage === null ? undefined : [countsText(stage), ...stage.warnings].filter(Boolean).join("\n"),
+    title:
+      stage === null
+        ? undefined
+        : [countsText(stage), ...stage.warnings.map(onPage)].filter(Boolean).join("\n"),
     "data-stage": stage?.name,
     "data-status": stage?.status,
   };
