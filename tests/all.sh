@@ -101,7 +101,7 @@ step clippy-wasm32 check finished clippy-wasm32
 if [ "${1:-all}" = all ]; then
     # Compiled into a place of its own, while tests that end late leave a core free.
     start wasm wasm-pack test --node --mode no-install tests/wasm --profile page
-    step native cargo cargo test --quiet
+    step native cargo cargo test --quiet --no-fail-fast
     # One core is enough for it.
     start identical node tests/wasm/identical.mjs target/debug/ridgeline
     step doc check env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet

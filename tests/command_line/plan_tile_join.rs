@@ -405,8 +405,8 @@ fn changed_at(bytes: &[u8], place: f64) -> Vec<u8> {
     bytes
 }
 
-/// The folder of a plan whose tiles have three views each, and the plan.
-fn planned_with_three_views(block: &Block) -> (PathBuf, Value) {
+/// A plan whose cells have three views each, its folder, and the number of the tile that has one.
+fn planned_with_three_views(block: &Block) -> (Value, PathBuf, String) {
     let mut command = block.command();
     command.args(["plan", "scene", "--tile", "60", "--max-views", "3"]);
     let planned = command.args(AREA).args(["--out", "few"]).output().unwrap();
@@ -414,21 +414,36 @@ fn planned_with_three_views(block: &Block) -> (PathBuf, Value) {
     let folder = block.0.path().join("few");
     let plan: Value =
         serde_json::from_slice(&fs::read(folder.join("tiles.json")).unwrap()).unwrap();
-    (folder, plan)
+    let tiles = plan["tiles"].as_array().unwrap();
+    let has_cell = |tile: &Value| tile["cells"].get(0).is_some();
+    let number = (tiles.iter().position(has_cell).unwrap() + 1).to_string();
+    (plan, folder, number)
+}
+
+/// The views of the first cell of a tile.
+fn views_of<'a>(plan: &'a Value, tile: &str) -> &'a Vec<Value> {
+    let index = tile.parse::<usize>().unwrap() - 1;
+    plan["tiles"][index]["cells"][0]["views"]
+        .as_array()
+        .unwrap()
 }
 
 #[test]
 fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
     let block = Block::planned();
-    let (folder, plan) = planned_with_three_views(&block);
-    let views = plan["tiles"][0]["cells"][0]["views"].as_array().unwrap();
+    let (plan, folder, tile) = planned_with_three_views(&block);
+    let views = views_of(&plan, &tile);
     let is_read = |name: &str| views.iter().any(|view| view["view"] == name);
     assert_eq!(views.len(), 3);
     let make = || {
-        let _ = fs::remove_file(folder.join("parts/1.part"));
-        block.command().args(["tile", "few", "1"]).output().unwrap()
+        let _ = fs::remove_file(folder.join(format!("parts/{tile}.part")));
+        block
+            .command()
+            .args(["tile", "few", &tile])
+            .output()
+            .unwrap()
     };
-    let part = || fs::read(folder.join("parts/1.part")).unwrap();
+    let part = || fs::read(folder.join(format!("parts/{tile}.part"))).unwrap();
     assert!(make().status.success());
     let sound = part();
     // The others are damaged, all but their first bytes and their length.
@@ -479,8 +494,8 @@ fn tiff_files() -> Vec<(String, Vec<u8>)> {
 #[test]
 fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
     let block = Block::planned_of(tiff_files());
-    let (folder, plan) = planned_with_three_views(&block);
-    let views = plan["tiles"][0]["cells"][0]["views"].as_array().unwrap();
+    let (plan, folder, tile) = planned_with_three_views(&block);
+    let views = views_of(&plan, &tile);
     let is_read = |name: &str| views.iter().any(|view| view["view"] == name);
     let images = block.scene().join("images");
     let head = |name: &str| {
@@ -489,10 +504,14 @@ fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
         found.unwrap()["head"]["bytes"].as_u64()
     };
     let make = || {
-        let _ = fs::remove_file(folder.join("parts/1.part"));
-        block.command().args(["tile", "few", "1"]).output().unwrap()
+        let _ = fs::remove_file(folder.join(format!("parts/{tile}.part")));
+        block
+            .command()
+            .args(["tile", "few", &tile])
+            .output()
+            .unwrap()
     };
-    let part = || fs::read(folder.join("parts/1.part")).unwrap();
+    let part = || fs::read(folder.join(format!("parts/{tile}.part"))).unwrap();
     assert!(make().status.success());
     let sound = part();
     let [mut others, mut refused] = [0, 0];

@@ -10,7 +10,7 @@ import { join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 
-const MOST_WASM = 1_750_000;
+const MOST_WASM = 1_760_000;
 const MOST_IN_ALL = 2_080_000;
 // Of the lessons, as static hosts serve them.
 const MOST_LESSONS = 80_000;
