@@ -76,7 +76,8 @@ pub fn finer_than(
     let cameras = plan.views.iter().map(|view| &view.whole);
     let whole = ground
         .and_then(|[low, high]| pixel_in_the_middle(cameras, 0.5 * (low + high) - plan.origin.z));
-    let factor = whole.map_or(1.0, |whole| reduction_to(pixel_m, whole));
+    // In whole steps, as decision 25 measured what is missed.
+    let factor = whole.map_or(1.0, |whole| reduction_to(pixel_m, whole).floor());
     LoadOptions {
         reduction: Some(larger(factor, options.reduction.unwrap_or(1.0))),
         ..options.clone()
