@@ -405,64 +405,80 @@ fn changed_at(bytes: &[u8], place: f64) -> Vec<u8> {
     bytes
 }
 
-/// A plan whose cells have three views each, its folder, and the number of the tile that has one.
-fn planned_with_three_views(block: &Block) -> (Value, PathBuf, String) {
-    let mut command = block.command();
-    command.args(["plan", "scene", "--tile", "60", "--max-views", "3"]);
-    let planned = command.args(AREA).args(["--out", "few"]).output().unwrap();
-    assert!(planned.status.success(), "{}", words(&planned));
-    let folder = block.0.path().join("few");
-    let plan: Value =
-        serde_json::from_slice(&fs::read(folder.join("tiles.json")).unwrap()).unwrap();
-    let tiles = plan["tiles"].as_array().unwrap();
-    let has_cell = |tile: &Value| tile["cells"].get(0).is_some();
-    let number = (tiles.iter().position(has_cell).unwrap() + 1).to_string();
-    (plan, folder, number)
+/// A plan whose cells have three views each, and the first tile that has one.
+struct FewViews<'a> {
+    block: &'a Block,
+    plan: Value,
+    tile: usize,
 }
 
-/// The views of the first cell of a tile.
-fn views_of<'a>(plan: &'a Value, tile: &str) -> &'a Vec<Value> {
-    let index = tile.parse::<usize>().unwrap() - 1;
-    plan["tiles"][index]["cells"][0]["views"]
-        .as_array()
-        .unwrap()
+impl<'a> FewViews<'a> {
+    fn of(block: &'a Block) -> Self {
+        let mut command = block.command();
+        command.args(["plan", "scene", "--tile", "60", "--max-views", "3"]);
+        let planned = command.args(AREA).args(["--out", "few"]).output().unwrap();
+        assert!(planned.status.success(), "{}", words(&planned));
+        let text = fs::read(block.0.path().join("few/tiles.json")).unwrap();
+        let plan: Value = serde_json::from_slice(&text).unwrap();
+        let mut tiles = plan["tiles"].as_array().unwrap().iter();
+        let tile = tiles
+            .position(|tile| tile["cells"].get(0).is_some())
+            .unwrap();
+        Self { block, plan, tile }
+    }
+
+    /// The views of its first cell.
+    fn views(&self) -> &Vec<Value> {
+        let cell = &self.plan["tiles"][self.tile]["cells"][0];
+        cell["views"].as_array().unwrap()
+    }
+
+    fn reads(&self, name: &str) -> bool {
+        self.views().iter().any(|view| view["view"] == name)
+    }
+
+    fn path(&self) -> PathBuf {
+        let name = format!("few/parts/{}.part", self.tile + 1);
+        self.block.0.path().join(name)
+    }
+
+    /// Makes the part, also where it is there.
+    fn make(&self) -> Output {
+        let _ = fs::remove_file(self.path());
+        let tile = (self.tile + 1).to_string();
+        let mut command = self.block.command();
+        command.args(["tile", "few", &tile]).output().unwrap()
+    }
+
+    fn part(&self) -> Vec<u8> {
+        fs::read(self.path()).unwrap()
+    }
 }
 
 #[test]
 fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
     let block = Block::planned();
-    let (plan, folder, tile) = planned_with_three_views(&block);
-    let views = views_of(&plan, &tile);
-    let is_read = |name: &str| views.iter().any(|view| view["view"] == name);
-    assert_eq!(views.len(), 3);
-    let make = || {
-        let _ = fs::remove_file(folder.join(format!("parts/{tile}.part")));
-        block
-            .command()
-            .args(["tile", "few", &tile])
-            .output()
-            .unwrap()
-    };
-    let part = || fs::read(folder.join(format!("parts/{tile}.part"))).unwrap();
-    assert!(make().status.success());
-    let sound = part();
+    let few = FewViews::of(&block);
+    assert_eq!(few.views().len(), 3);
+    assert!(few.make().status.success());
+    let sound = few.part();
     // The others are damaged, all but their first bytes and their length.
     let images = block.scene().join("images");
     let (read, others): (Vec<_>, Vec<_>) =
-        (files_in(&images).into_iter()).partition(|(name, _)| is_read(name));
+        (files_in(&images).into_iter()).partition(|(name, _)| few.reads(name));
     assert_eq!((read.len(), others.is_empty()), (3, false));
     for (name, bytes) in &others {
         fs::write(images.join(name), changed_at(bytes, 1.0)).unwrap();
     }
-    let output = make();
+    let output = few.make();
     assert!(output.status.success(), "{}", words(&output));
-    assert!(part() == sound);
+    assert!(few.part() == sound);
     let (name, bytes) = &read[1];
     fs::write(images.join(name), changed_at(bytes, 1.0)).unwrap();
     let named = format!("{name}: the file has changed since the plan was made");
-    block.is_refused(&make(), &[&named]);
+    block.is_refused(&few.make(), &[&named]);
     fs::write(images.join(name), bytes).unwrap();
-    assert!(make().status.success() && part() == sound);
+    assert!(few.make().status.success() && few.part() == sound);
     // An archive is read as a whole, to the same results.
     for (name, bytes) in &others {
         fs::write(images.join(name), bytes).unwrap();
@@ -494,26 +510,15 @@ fn tiff_files() -> Vec<(String, Vec<u8>)> {
 #[test]
 fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
     let block = Block::planned_of(tiff_files());
-    let (plan, folder, tile) = planned_with_three_views(&block);
-    let views = views_of(&plan, &tile);
-    let is_read = |name: &str| views.iter().any(|view| view["view"] == name);
+    let few = FewViews::of(&block);
     let images = block.scene().join("images");
     let head = |name: &str| {
-        let mut inputs = plan["inputs"].as_array().unwrap().iter();
+        let mut inputs = few.plan["inputs"].as_array().unwrap().iter();
         let found = inputs.find(|input| input["file"] == format!("images/{name}"));
         found.unwrap()["head"]["bytes"].as_u64()
     };
-    let make = || {
-        let _ = fs::remove_file(folder.join(format!("parts/{tile}.part")));
-        block
-            .command()
-            .args(["tile", "few", &tile])
-            .output()
-            .unwrap()
-    };
-    let part = || fs::read(folder.join(format!("parts/{tile}.part"))).unwrap();
-    assert!(make().status.success());
-    let sound = part();
+    assert!(few.make().status.success());
+    let sound = few.part();
     let [mut others, mut refused] = [0, 0];
     for (name, bytes) in files_in(&images) {
         let path = images.join(&name);
@@ -525,22 +530,22 @@ fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
         );
         // A pixel between the first bytes and all directories.
         fs::write(&path, changed_at(&bytes, 0.75)).unwrap();
-        let output = make();
-        if is_read(&name) && !output.status.success() {
+        let output = few.make();
+        if few.reads(&name) && !output.status.success() {
             let named = format!("{name}: the file has changed since the plan was made");
             block.is_refused(&output, &[&named]);
             refused += 1;
         } else {
             // Another photograph, or a block of it that holds nothing of the window.
             assert!(output.status.success(), "{}", words(&output));
-            assert!(part() == sound);
+            assert!(few.part() == sound);
             others += 1;
             // Its directory says where it stands.
             let mut moved = bytes.clone();
             moved[crate::planted_tiff::directory_of(&bytes) + 30] ^= 1;
             fs::write(&path, moved).unwrap();
             let named = format!("{name}: the file has changed since the plan was made");
-            block.is_refused(&make(), &[&named]);
+            block.is_refused(&few.make(), &[&named]);
         }
         fs::write(&path, bytes).unwrap();
     }

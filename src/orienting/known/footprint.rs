@@ -25,6 +25,9 @@ pub struct Footprint {
 /// Most corners of a ring. Assumption: no building has more.
 const MOST_CORNERS: usize = 5000;
 
+/// Circumference of the Earth at the equator, metres.
+const EARTH_M: f64 = 40_075_017.0;
+
 impl Footprint {
     /// A footprint of an outline, less the origin of the scene; otherwise why it is none.
     pub(super) fn new(outline: Outline, origin: Vector3<f64>) -> Result<Self, String> {
@@ -45,6 +48,9 @@ impl Footprint {
                 n if n < 3 => return Err(format!("{what} has fewer than three corners")),
                 n if n > MOST_CORNERS => return Err(format!("{what} has {n} corners")),
                 _ => {}
+            }
+            if ring.iter().any(|p| p.coords.amax() > EARTH_M) {
+                return Err(format!("{what} has a corner that is no place on the Earth"));
             }
             if let Some([i, j]) = crossing(&ring) {
                 return Err(format!("{what} crosses itself after corners {i} and {j}"));

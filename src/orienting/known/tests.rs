@@ -434,6 +434,16 @@ fn footprints_that_cannot_be_used_are_refused_by_name() {
         &UTM,
         "fewer than three corners",
     );
+    for rings in [
+        "[[[0,0],[9,1e300],[9,0]]]",
+        "[[[0,0],[9,0],[9,9],[0,9]],[[1e200,1],[3,1],[3,3]]]",
+    ] {
+        refused(
+            &feature("Polygon", rings, CRS),
+            &UTM,
+            "no place on the Earth",
+        );
+    }
     refused(
         &feature("Polygon", "[[[0,0],[9,9],[9,0],[0,9]]]", CRS),
         &UTM,

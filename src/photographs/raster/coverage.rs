@@ -114,20 +114,13 @@ fn means<T: Copy + Into<f32>, const CHANNELS: usize>(
 mod tests {
     use super::*;
 
-    /// Grey values that rise linearly with the position of the pixel's centre.
-    fn ramp(width: usize, height: usize) -> Gray {
-        Gray::from_fn(width, height, |x, y| {
-            0.01 * (x as f32 + 0.5) + 0.02 * (y as f32 + 0.5)
-        })
-    }
-
     #[test]
     fn a_ramp_stays_in_its_place_whatever_the_factor() {
         for (factor, size) in [(2.5, [20, 12]), (1.6, [31, 18]), (2.0, [25, 15])] {
             let [columns, rows] = [(size[0], 50), (size[1], 30)]
                 .map(|(n, long)| Coverage::new(0..n, factor, 0..long));
-            let reduced = reduced_gray(&ramp(50, 30), &columns, &rows);
-            let expected = ramp(size[0], size[1]);
+            let reduced = reduced_gray(&Gray::ramp(50, 30), &columns, &rows);
+            let expected = Gray::ramp(size[0], size[1]);
             // A part of a pixel counts with the value at its middle: a tenth of a pixel at most.
             for (a, b) in reduced.data.iter().zip(&expected.data) {
                 assert!(
@@ -140,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_part_is_a_part_of_the_whole() {
-        let image = ramp(50, 30);
+        let image = Gray::ramp(50, 30);
         let part = Gray::from_fn(20, 30, |x, y| image.get(x + 16, y));
         let rows = Coverage::new(0..10, 3.0, 0..30);
         let whole = reduced_gray(&image, &Coverage::new(0..31, 1.6, 0..50), &rows);

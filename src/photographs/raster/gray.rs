@@ -65,6 +65,14 @@ impl Gray {
         })
     }
 
+    /// Grey values that rise linearly with the position of the pixel's centre.
+    #[cfg(test)]
+    pub(crate) fn ramp(width: usize, height: usize) -> Self {
+        Self::from_fn(width, height, |x, y| {
+            0.01 * (x as f32 + 0.5) + 0.02 * (y as f32 + 0.5)
+        })
+    }
+
     /// The value at a column and row.
     pub fn get(&self, x: usize, y: usize) -> f32 {
         self.data[y * self.width + x]

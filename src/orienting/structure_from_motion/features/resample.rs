@@ -41,23 +41,17 @@ pub(super) fn doubled(image: &Gray) -> Gray {
 mod tests {
     use super::*;
 
-    fn ramp(width: usize, height: usize) -> Gray {
-        Gray::from_fn(width, height, |x, y| {
-            0.01 * (x as f32 + 0.5) + 0.02 * (y as f32 + 0.5)
-        })
-    }
-
     #[test]
     fn both_directions_keep_a_ramp_in_its_place() {
-        let reduced = to_working_size(&ramp(50, 30), 20);
+        let reduced = to_working_size(&Gray::ramp(50, 30), 20);
         assert_eq!((reduced.width, reduced.height), (20, 12));
-        assert!((reduced.get(10, 6) - 2.5 * ramp(20, 12).get(10, 6)).abs() < 0.002);
-        let large = doubled(&ramp(20, 12));
+        assert!((reduced.get(10, 6) - 2.5 * Gray::ramp(20, 12).get(10, 6)).abs() < 0.002);
+        let large = doubled(&Gray::ramp(20, 12));
         assert!((large.get(10, 6) - 0.5 * (0.01 * 10.5 + 0.02 * 6.5)).abs() < 1e-6);
     }
 
     #[test]
     fn a_small_image_stays_as_it_is() {
-        assert_eq!(to_working_size(&ramp(20, 12), 20), ramp(20, 12));
+        assert_eq!(to_working_size(&Gray::ramp(20, 12), 20), Gray::ramp(20, 12));
     }
 }
