@@ -1,6 +1,7 @@
 /** The state of one figure that stands by itself, and its questions to the scene that it shares with others. */
 import { batch, computed, effect, signal } from "@preact/signals";
 import { Inquiry } from "../app/selection/inquiry";
+import { DEGREE } from "../shared/linear";
 import { formatSelection, parseSelection, type Selection } from "../shared/selection";
 import {
   type Figure,
@@ -13,7 +14,6 @@ import { FIRST_STATE, type FigureState } from "./figureState";
 import type { SharedScene } from "./sharedScene";
 
 const NOTHING_RESUMED: Resumed = { thetaDeg: null, point: null };
-const DEGREE = Math.PI / 180;
 
 export class FigureStore {
   readonly #scene: SharedScene;

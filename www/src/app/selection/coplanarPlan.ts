@@ -1,5 +1,5 @@
 /** What the plan of coplanar sets shows, and what is picked there. */
-
+import { edgesOf, planArea } from "../../shared/linear";
 import { isVerifiedSet } from "../../shared/proposed";
 import type { CoplanarSets, Vec2, Vec3 } from "../../shared/records";
 
@@ -9,7 +9,7 @@ export type CoplanarOutlines = "hull" | "polygon" | "both";
 /** The verified sets, and that which is picked; the largest first, for the ground is one that holds all others. */
 export function shownSets({ sets }: CoplanarSets, picked: number | null): number[] {
   const shown = sets.flatMap((set, index) => (isVerifiedSet(set) || index === picked ? [index] : []));
-  const area = (index: number) => areaOf(sets[index]?.polygon ?? []);
+  const area = (index: number) => planArea(sets[index]?.polygon ?? []);
   return shown.sort((a, b) => area(b) - area(a));
 }
 
@@ -19,18 +19,7 @@ export function setAt(coplanar: CoplanarSets, at: Vec2): number | null {
   return over.at(-1) ?? null;
 }
 
-function areaOf(ring: readonly Vec3[]): number {
-  const twice = ring.map(([ax, ay], i) => {
-    const [bx, by] = ring[(i + 1) % ring.length] as Vec3;
-    return ax * by - bx * ay;
-  });
-  return twice.reduce((sum, one) => sum + one / 2, 0);
-}
-
 /** Is a place inside a convex ring, counter-clockwise? */
 function holds(ring: readonly Vec3[], [x, y]: Vec2): boolean {
-  return ring.every(([ax, ay], i) => {
-    const [bx, by] = ring[(i + 1) % ring.length] as Vec3;
-    return (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0;
-  });
+  return edgesOf(ring).every(([[ax, ay], [bx, by]]) => (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0);
 }

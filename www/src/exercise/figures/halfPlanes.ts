@@ -1,11 +1,10 @@
 /** At a half-plane: the angle of the roof, and how fast the images disagree beside it. */
-
+import { DEGREE } from "../../shared/linear";
 import type { Side, SideTrace } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import type { Asked, FigureExercise, Outcome } from "./judgeFigure";
 import { edgeAlong, faceBeside, lineOf } from "./truth";
 
-const DEGREE = Math.PI / 180;
 /** What B99 4.4 states of a well textured face, degrees. */
 const TOLERANCE_DEG = 2;
 

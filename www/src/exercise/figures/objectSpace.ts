@@ -1,12 +1,11 @@
 /** In the figures of W96, and in plan: main directions, regions, faces. */
-
+import { DEGREE, isInside } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import { inUnit, kindOf, readQuantity } from "../judging/quantity";
 import type { FigureExercise, Outcome } from "./judgeFigure";
-import { EDGES, FACES, faceOver, imageIn, isInside, type Place, type RoofFace } from "./truth";
+import { EDGES, FACES, faceOver, imageIn, type Place, type RoofFace } from "./truth";
 
-const DEGREE = Math.PI / 180;
 const TOLERANCE_DEG = 2;
 
 const azimuthOf = ([ax, ay]: Vec2 | readonly number[], [bx, by]: Vec2 | readonly number[]) =>

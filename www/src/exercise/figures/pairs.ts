@@ -1,5 +1,5 @@
 /** Which two views know a line best: B99 3.4 and figure 9, by the covariance of the line in space. */
-
+import { add, cross, DEGREE, distance2, dot, norm, sub, unit } from "../../shared/linear";
 import type { ViewInfo } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import type { FigureExercise, Outcome } from "./judgeFigure";
@@ -12,25 +12,17 @@ const ALONG_DEG = 35;
 const SHORT = 0.6;
 const MOST_VIEWS = 4;
 
-const minus = (a: Point, b: Point): Point => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-const dot = (a: Point, b: Point) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const unit = (a: Point): Point => {
-  const size = Math.hypot(...a);
-  return [a[0] / size, a[1] / size, a[2] / size];
-};
-const cross = ([a, b, c]: Point, [x, y, z]: Point): Point => [b * z - c * y, c * x - a * z, a * y - b * x];
-
 /** How far the image of a line moves across itself, pixels per metre, when the line moves along two directions across it. */
 function sensitivity(view: ViewInfo, [p, q]: readonly [Point, Point]): readonly [number, number] {
-  const along = unit(minus(q, p));
-  const left = unit([-along[1], along[0], 0]);
+  const along = unit(sub(q, p));
+  const left = unit([-along[1], along[0], 0] as const);
   const up = cross(along, left);
   const [a, b] = [imageIn(view, p), imageIn(view, q)];
-  const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+  const length = distance2(a, b);
   const across = [-(b[1] - a[1]) / length, (b[0] - a[0]) / length] as const;
   return [left, up].map((way) => {
     const step = 0.01;
-    const moved = imageIn(view, [p[0] + step * way[0], p[1] + step * way[1], p[2] + step * way[2]]);
+    const moved = imageIn(view, add(p, way, step));
     return ((moved[0] - a[0]) * across[0] + (moved[1] - a[1]) * across[1]) / step;
   }) as [number, number];
 }
@@ -64,13 +56,13 @@ export function pairsOf(shown: Figure): Pair[] {
   const views = record.supports.slice(0, MOST_VIEWS).flatMap(({ view }) => scene?.views[view] ?? []);
   return views.flatMap((first, i) =>
     views.slice(i + 1).map((second) => {
-      const base = minus(second.center, first.center);
-      const cosine = Math.abs(dot(unit(base), unit(minus(line[1], line[0]))));
+      const base = sub(second.center, first.center);
+      const cosine = Math.abs(dot(unit(base), unit(sub(line[1], line[0]))));
       return {
         names: `${first.name} and ${second.name}`,
         sigma: sigmaAcross([first, second], line),
-        baseline: Math.hypot(...base),
-        angle: (Math.acos(Math.min(1, cosine)) * 180) / Math.PI,
+        baseline: norm(base),
+        angle: Math.acos(Math.min(1, cosine)) / DEGREE,
       };
     }),
   );

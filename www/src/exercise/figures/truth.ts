@@ -2,7 +2,7 @@
  * What is true of the demo scene: the roofs from which its photographs were rendered (`demoTruth.json`, by scripts/demoTruth.mjs), and
  * which of them an image line, a 3D line or a facet shows. Metres, in the scene's local frame; pixels.
  */
-
+import { add, cross, DEGREE, distance2, dot, isInside, mix3, scaled, sub, unit } from "../../shared/linear";
 import type { Side, ViewInfo } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import demo from "./demoTruth.json";
@@ -31,7 +31,6 @@ export interface RoofFace {
 export const FACES = demo.faces as unknown as readonly RoofFace[];
 export const EDGES = demo.edges as unknown as readonly RoofEdge[];
 
-const DEGREE = Math.PI / 180;
 /** So near an image line is to the edge that it shows, pixels, and so parallel. */
 const NEAR_PX = 1.6;
 const PARALLEL = Math.cos(4 * DEGREE);
@@ -66,7 +65,7 @@ function apart([p, q]: Stretch, [a, b]: Stretch): { distance: number; isParallel
   const length = Math.hypot(dx, dy);
   const across = ([x, y]: Place) => Math.abs((x - a[0]) * dy - (y - a[1]) * dx) / length;
   const along = ([x, y]: Place) => ((x - a[0]) * dx + (y - a[1]) * dy) / length;
-  const own = Math.hypot(q[0] - p[0], q[1] - p[1]);
+  const own = distance2(p, q);
   const [from, to] = [along(p), along(q)];
   const common = Math.min(length, Math.max(from, to)) - Math.max(0, Math.min(from, to));
   return {
@@ -137,42 +136,23 @@ export function faceBeside(
   side: Side,
 ): { face: RoofFace; theta: number } | null {
   const [p, q] = line;
-  const along = unit([q[0] - p[0], q[1] - p[1], q[2] - p[2]]);
-  const left = unit([-along[1], along[0], 0]);
-  const outward = side === "left" ? left : (left.map((value) => -value) as unknown as Point);
-  const middle = [0, 1, 2].map((i) => ((p[i] ?? 0) + (q[i] ?? 0)) / 2) as unknown as Point;
-  const face = faceOver([middle[0] + 0.6 * outward[0], middle[1] + 0.6 * outward[1]]);
+  const along = unit(sub(q, p));
+  const left = unit([-along[1], along[0], 0] as const);
+  const outward = scaled(left, side === "left" ? 1 : -1);
+  const [x, y] = add(mix3(p, q, 0.5), outward, 0.6);
+  const face = faceOver([x, y]);
   if (face === null) {
     return null;
   }
   const upward = cross(along, outward);
-  const up = upward[2] < 0 ? (upward.map((value) => -value) as unknown as Point) : upward;
+  const up = scaled(upward, upward[2] < 0 ? -1 : 1);
   const [a, b, c] = face.plane;
   const across = cross([a, b, c], along);
   const sign = dot(across, outward) < 0 ? -1 : 1;
   return { face, theta: Math.atan2(sign * dot(across, up), sign * dot(across, outward)) / DEGREE };
 }
 
-/** Even-odd rule. */
-export function isInside([x, y]: Place, polygon: readonly (readonly number[])[]): boolean {
-  return polygon.reduce((inside, [ax = 0, ay = 0], i) => {
-    const [bx = 0, by = 0] = polygon[(i + 1) % polygon.length] ?? [];
-    return ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax) ? !inside : inside;
-  }, false);
-}
-
 function nearest<T>(all: readonly T[], distance: (one: T) => number, most: number): T | null {
   const found = all.map((one) => ({ one, at: distance(one) })).sort((a, b) => a.at - b.at)[0];
   return found !== undefined && found.at <= most ? found.one : null;
-}
-
-const dot = (a: Point, b: Point) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-
-function cross([a, b, c]: Point, [x, y, z]: Point): Point {
-  return [b * z - c * y, c * x - a * z, a * y - b * x];
-}
-
-function unit(a: Point): Point {
-  const size = Math.hypot(...a);
-  return [a[0] / size, a[1] / size, a[2] / size];
 }

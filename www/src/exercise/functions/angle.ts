@@ -1,24 +1,18 @@
 /** The angle of a half-plane about its line: theta of B99 4.1. */
-import { described, type FunctionExercise } from "../judging/judge";
-import { applied, crossMatrix, dot, type Vector } from "../judging/linear";
+import { add, cross, DEGREE, dot, scaled, sub, unit } from "../../shared/linear";
+import { type FunctionExercise, numberProblem } from "../judging/judge";
+import type { Vector } from "../judging/linear";
 import { between, plantedPoint } from "../judging/random";
 
 type Input = readonly [p: Vector, q: Vector, n: Vector];
 
-const DEGREE = Math.PI / 180;
-const cross = (a: Vector, b: Vector) => applied(crossMatrix(a), b);
-const unit = (a: Vector) => a.map((value) => value / Math.hypot(...a));
-const less = (a: Vector, b: Vector) => a.map((value, i) => value - (b[i] ?? Number.NaN));
-
 /** The angle, radians, of the plane that rises to the left of p to q. */
 function angle(p: Vector, q: Vector, n: Vector): number {
-  const along = unit(less(q, p));
+  const along = unit(sub(q, p));
   const outward = unit(cross([0, 0, 1], along));
   const up = cross(along, outward);
-  let away = cross(n, along);
-  if (dot(away, outward) < 0) {
-    away = away.map((value) => -value);
-  }
+  const level = cross(n, along);
+  const away = dot(level, outward) < 0 ? scaled(level, -1) : level;
   return Math.atan2(dot(away, up), dot(away, outward));
 }
 
@@ -57,19 +51,16 @@ function angleOfPlane(p, q, n) {
     const azimuth = between(random, 0, 2 * Math.PI);
     const rise = between(random, 0.12, 0.5) * (random() < 0.5 ? -1 : 1);
     const along = [Math.cos(azimuth) * Math.cos(rise), Math.sin(azimuth) * Math.cos(rise), Math.sin(rise)];
-    const q = p.map((value, i) => value + 8 * (along[i] ?? 0));
+    const q = add(p, along, 8);
     const planted = between(random, 0.15, 1) * (random() < 0.5 ? -1 : 1);
     const outward = unit(cross([0, 0, 1], along));
     const up = cross(along, outward);
-    const away = outward.map((value, i) => value * Math.cos(planted) + (up[i] ?? 0) * Math.sin(planted));
+    const away = add(scaled(outward, Math.cos(planted)), up, Math.sin(planted));
     const normal = unit(cross(along, away));
-    const n = (normal[2] ?? 0) < 0 ? normal.map((value) => -value) : normal;
+    const n = normal[2] < 0 ? scaled(normal, -1) : normal;
     return { input: [p, q, n], error: (answer) => Math.abs(answer - planted / DEGREE) };
   },
-  formProblem: (answer) =>
-    typeof answer === "number" && Number.isFinite(answer)
-      ? null
-      : `Return one number, degrees; this is ${described(answer)}.`,
+  formProblem: (answer) => numberProblem(answer, "degrees"),
   isSame: (a, b) => Math.abs(a - b) < 1e-5,
   mistakes: [
     {

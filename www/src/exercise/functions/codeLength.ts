@@ -1,5 +1,5 @@
 /** The description length of a region: what W96 3.3 minimises. */
-import { described, type FunctionExercise } from "../judging/judge";
+import { type FunctionExercise, numberProblem } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, normal } from "../judging/random";
 
@@ -50,10 +50,7 @@ function descriptionLength(values) {
     const planted = length(count, sigma ** 2);
     return { input: [values], error: (answer) => Math.abs(answer - planted) };
   },
-  formProblem: (answer) =>
-    typeof answer === "number" && Number.isFinite(answer)
-      ? null
-      : `Return one number, bits; this is ${described(answer)}.`,
+  formProblem: (answer) => numberProblem(answer, "bits"),
   isSame: (a, b) => Math.abs(a - b) < 1e-7 * (1 + Math.abs(a)),
   mistakes: [
     {

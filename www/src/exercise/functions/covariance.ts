@@ -1,31 +1,32 @@
 /** How well a point is known that two views show: B99 figure 9, "accuracy against the number of views". */
+import { dot, inverse, type Mat, times, transpose } from "../../shared/linear";
 import { type FunctionExercise, matrixProblem } from "../judging/judge";
-import { dot, inverse, type Matrix, product, sum, transposed, type Vector } from "../judging/linear";
+import { sum, type Vector } from "../judging/linear";
 import { between, plantedCamera, plantedPoint } from "../judging/random";
 
-type Input = readonly [projections: readonly Matrix[], x: Vector, sigma: number];
+type Input = readonly [projections: readonly Mat[], x: Vector, sigma: number];
 
 /** The derivatives of [u, v] by X: two rows of three. */
-function jacobian(p: Matrix, x: Vector): number[][] {
+function jacobian(p: Mat, x: Vector): Mat {
   const [a = 0, b = 0, w = 1] = p.map((row) => dot(row, [...x, 1]));
   return [a / w, b / w].map((at, i) => [0, 1, 2].map((k) => ((p[i]?.[k] ?? 0) - at * (p[2]?.[k] ?? 0)) / w));
 }
 
 /** Σ Jᵀ J over the views */
-function information(projections: readonly Matrix[], x: Vector, of = jacobian): number[][] {
+function information(projections: readonly Mat[], x: Vector, of = jacobian): Mat {
   return projections
     .map((p) => of(p, x))
-    .map((j) => product(transposed(j), j))
+    .map((j) => times(transpose(j), j))
     .reduce((all, one) => sum(all, one));
 }
 
-const scaled = (a: Matrix, by: number) => a.map((row) => row.map((value) => value * by));
+const scaled = (a: Mat, by: number): Mat => a.map((row) => row.map((value) => value * by));
 
-function covariance(projections: readonly Matrix[], x: Vector, sigma: number): number[][] {
+function covariance(projections: readonly Mat[], x: Vector, sigma: number): Mat {
   return scaled(inverse(information(projections, x)), sigma ** 2);
 }
 
-export const covarianceOfPoint: FunctionExercise<Input, Matrix> = {
+export const covarianceOfPoint: FunctionExercise<Input, Mat> = {
   kind: "function",
   name: "covarianceOfPoint",
   title: "How well a point is known",
@@ -102,7 +103,7 @@ function covarianceOfPoint(Ps, X, sigma) {
       says: "The derivative of u is (p₁ − u p₃) / w: what p₃ adds, the change of the depth, is missing.",
       variants: [
         (ps, x, sigma) => {
-          const j = (p: Matrix, at: Vector) => {
+          const j = (p: Mat, at: Vector) => {
             const w = dot(p[2] ?? [], [...at, 1]);
             return [0, 1].map((i) => [0, 1, 2].map((k) => (p[i]?.[k] ?? 0) / w));
           };
@@ -115,7 +116,7 @@ function covarianceOfPoint(Ps, X, sigma) {
       says: "The derivatives are not divided by p₃ · X: the point is as well known as if it were 1 m away.",
       variants: [
         (ps, x, sigma) => {
-          const j = (p: Matrix, at: Vector) => scaled(jacobian(p, at), dot(p[2] ?? [], [...at, 1]));
+          const j = (p: Mat, at: Vector) => scaled(jacobian(p, at), dot(p[2] ?? [], [...at, 1]));
           return scaled(inverse(information(ps, x, j)), sigma ** 2);
         },
       ],

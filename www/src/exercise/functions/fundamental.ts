@@ -1,27 +1,14 @@
 /** F from two projections, as every epipolar beam of B99 3.1 needs it. */
+import { apply, crossMatrix, type Mat, times, transpose } from "../../shared/linear";
 import { type FunctionExercise, matrixProblem } from "../judging/judge";
-import {
-  applied,
-  centreOf,
-  crossMatrix,
-  isSameUpToScale,
-  type Matrix,
-  product,
-  pseudoInverse,
-  transposed,
-} from "../judging/linear";
+import { centreOf, fundamental, isSameUpToScale, pseudoInverse } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
-type Input = readonly [p: Matrix, q: Matrix];
+type Input = readonly [p: Mat, q: Mat];
 
 const POINTS = 10;
 
-/** [e′]× P′ P⁺ */
-function fundamental(p: Matrix, q: Matrix): number[][] {
-  return product(crossMatrix(applied(q, centreOf(p))), product(q, pseudoInverse(p)));
-}
-
-export const fundamentalFromProjections: FunctionExercise<Input, Matrix> = {
+export const fundamentalFromProjections: FunctionExercise<Input, Mat> = {
   kind: "function",
   name: "fundamentalFromProjections",
   title: "The fundamental matrix of two views",
@@ -65,7 +52,7 @@ function fundamentalFromProjections(P, Q) {
       error: (f) =>
         Math.max(
           ...pairs.map(([x, y]) => {
-            const [a = 0, b = 0, c = 0] = applied(f, [...x, 1]);
+            const [a = 0, b = 0, c = 0] = apply(f, [...x, 1]);
             return Math.abs(a * y[0] + b * y[1] + c) / Math.hypot(a, b);
           }),
         ),
@@ -77,35 +64,35 @@ function fundamentalFromProjections(P, Q) {
     {
       name: "transposed",
       says: "This is Fᵀ: it holds for xᵀ F x′ = 0. Here x, of the view of P, stands on the right, so that F x is a line of the view of P′.",
-      variants: [(p, q) => transposed(fundamental(p, q))],
+      variants: [(p, q) => transpose(fundamental(p, q))],
     },
     {
       name: "no cross product",
       says: "This is P′ P⁺ alone, which maps points to points. The line through the epipole and that point is their cross product: multiply by [e′]× from the left.",
-      variants: [(p, q) => product(q, pseudoInverse(p))],
+      variants: [(p, q) => times(q, pseudoInverse(p))],
     },
     {
       name: "transpose for pseudo-inverse",
       says: "Pᵀ stands in the place of P⁺. P is not orthogonal: P⁺ = Pᵀ (P Pᵀ)⁻¹.",
-      variants: [(p, q) => product(crossMatrix(applied(q, centreOf(p))), product(q, transposed(p)))],
+      variants: [(p, q) => times(crossMatrix(apply(q, centreOf(p))), times(q, transpose(p)))],
     },
     {
       name: "wrong epipole",
       says: "The epipole is that of the other view: e = P C′. All lines F x lie in the second view and meet in e′ = P′ C, the image of the first centre.",
-      variants: [(p, q) => product(crossMatrix(applied(p, centreOf(q))), product(q, pseudoInverse(p)))],
+      variants: [(p, q) => times(crossMatrix(apply(p, centreOf(q))), times(q, pseudoInverse(p)))],
     },
     {
       name: "wrong sign",
       says: "[e′]× is antisymmetric: what stands above the diagonal has the opposite sign below it.",
       variants: [
         (p, q) => {
-          const skew = crossMatrix(applied(q, centreOf(p))).map((row) => row.map(Math.abs));
-          return product(skew, product(q, pseudoInverse(p)));
+          const skew = crossMatrix(apply(q, centreOf(p))).map((row) => row.map(Math.abs));
+          return times(skew, times(q, pseudoInverse(p)));
         },
         (p, q) => {
-          const skew = crossMatrix(applied(q, centreOf(p)));
+          const skew = crossMatrix(apply(q, centreOf(p)));
           const mirrored = skew.map((row, i) => row.map((value, j) => (j > i ? value : (skew[j]?.[i] ?? 0))));
-          return product(mirrored, product(q, pseudoInverse(p)));
+          return times(mirrored, times(q, pseudoInverse(p)));
         },
       ],
     },

@@ -1,38 +1,20 @@
 /** The homography that a plane induces between two views: H(theta) of B99 4.1. */
+import { add, apply, dot, inverse, type Mat, scaled, sub, times, transpose } from "../../shared/linear";
 import { type FunctionExercise, matrixProblem } from "../judging/judge";
-import {
-  applied,
-  dehomogenised,
-  inverse,
-  isSameUpToScale,
-  type Matrix,
-  outer,
-  product,
-  sum,
-  transposed,
-  type Vector,
-} from "../judging/linear";
+import { dehomogenised, distance, isSameUpToScale, outer, sum, type Vector } from "../judging/linear";
 import { between, plantedCamera } from "../judging/random";
 
-type Input = readonly [k: Matrix, kOther: Matrix, r: Matrix, t: Vector, n: Vector, d: number];
+type Input = readonly [k: Mat, kOther: Mat, r: Mat, t: Vector, n: Vector, d: number];
 
 const POINTS = 8;
 
 /** K′ (R + t nᵀ / d) K⁻¹ */
-function homography(
-  k: Matrix,
-  kOther: Matrix,
-  r: Matrix,
-  t: Vector,
-  n: Vector,
-  d: number,
-  sign = 1,
-): number[][] {
-  return product(kOther, product(sum(r, outer(t, n), sign / d), inverse(k)));
+function homography(k: Mat, kOther: Mat, r: Mat, t: Vector, n: Vector, d: number, sign = 1): Mat {
+  return times(kOther, times(sum(r, outer(t, n), sign / d), inverse(k)));
 }
 
 /** The same images, in coordinates that are shifted by half a pixel. */
-function shift(by: number): number[][] {
+function shift(by: number): Mat {
   return [
     [1, 0, by],
     [0, 1, by],
@@ -40,7 +22,7 @@ function shift(by: number): number[][] {
   ];
 }
 
-export const homographyOfPlane: FunctionExercise<Input, Matrix> = {
+export const homographyOfPlane: FunctionExercise<Input, Mat> = {
   kind: "function",
   name: "homographyOfPlane",
   title: "The homography of a plane",
@@ -66,34 +48,23 @@ function homographyOfPlane(K, L, R, t, n, d) {
   plant: (random) => {
     const [first, second] = [plantedCamera(random), plantedCamera(random)];
     // From the first camera to the second: X′ = R′ Rᵀ (X − t) + t′.
-    const r = product(second.r, transposed(first.r));
-    const t = second.t.map((value, i) => value - (applied(r, first.t)[i] ?? 0));
+    const r = times(second.r, transpose(first.r));
+    const t = sub(second.t, apply(r, first.t));
     // A roof: steep as roofs are, its distance from the camera beyond doubt.
     const slope = between(random, 0.2, 0.7);
     const azimuth = between(random, 0, 2 * Math.PI);
     const up = [Math.sin(slope) * Math.cos(azimuth), Math.sin(slope) * Math.sin(azimuth), Math.cos(slope)];
-    const n = applied(first.r, up);
-    const foot = applied(first.r, [0, 0, between(random, 0, 8)]).map((value, i) => value + (first.t[i] ?? 0));
-    const d = n.reduce((all, value, i) => all + value * (foot[i] ?? 0), 0);
+    const n = apply(first.r, up);
+    const d = dot(n, add(apply(first.r, [0, 0, between(random, 0, 8)]), first.t));
     const rays = Array.from({ length: POINTS }, () => [between(random, 0, 800), between(random, 0, 600)]);
     const pairs = rays.map((x) => {
-      const ray = applied(inverse(first.k), [...x, 1]);
-      const depth = d / n.reduce((all, value, i) => all + value * (ray[i] ?? 0), 0);
-      const moved = applied(
-        r,
-        ray.map((value) => value * depth),
-      ).map((value, i) => value + (t[i] ?? 0));
-      return [x, dehomogenised(applied(second.k, moved))] as const;
+      const ray = apply(inverse(first.k), [...x, 1]);
+      const moved = add(apply(r, scaled(ray, d / dot(n, ray))), t);
+      return [x, dehomogenised(apply(second.k, moved))] as const;
     });
     return {
       input: [first.k, second.k, r, t, n, d],
-      error: (h) =>
-        Math.max(
-          ...pairs.map(([x, [u, v]]) => {
-            const [hu, hv] = dehomogenised(applied(h, [...x, 1]));
-            return Math.hypot(hu - u, hv - v);
-          }),
-        ),
+      error: (h) => Math.max(...pairs.map(([x, y]) => distance(y, dehomogenised(apply(h, [...x, 1]))))),
     };
   },
   formProblem: (answer) => matrixProblem(answer, 3, 3),
@@ -102,7 +73,7 @@ function homographyOfPlane(K, L, R, t, n, d) {
     {
       name: "R transposed",
       says: "R turns the wrong way: Rᵀ stands where R should. Some files state the rotation from the camera to the world; here R takes from the first camera to the second.",
-      variants: [(k, l, r, t, n, d) => homography(k, l, transposed(r), t, n, d)],
+      variants: [(k, l, r, t, n, d) => homography(k, l, transpose(r), t, n, d)],
     },
     {
       name: "wrong sign",
@@ -127,7 +98,7 @@ function homographyOfPlane(K, L, R, t, n, d) {
     {
       name: "K not inverted",
       says: "K stands on the right as it is. Pixels become directions by K⁻¹.",
-      variants: [(k, l, r, t, n, d) => product(l, product(sum(r, outer(t, n), 1 / d), k))],
+      variants: [(k, l, r, t, n, d) => times(l, times(sum(r, outer(t, n), 1 / d), k))],
     },
     {
       name: "K forgotten",
@@ -148,9 +119,9 @@ function homographyOfPlane(K, L, R, t, n, d) {
       name: "half a pixel",
       says: "The result is shifted by half a pixel: the principal point is in the coordinates of the images already, with the centre of the first pixel at (0.5, 0.5).",
       variants: [0.5, -0.5].flatMap((by) => [
-        (...input: Input) => product(shift(by), product(homography(...input), shift(-by))),
-        (...input: Input) => product(homography(...input), shift(by)),
-        (...input: Input) => product(shift(by), homography(...input)),
+        (...input: Input) => times(shift(by), times(homography(...input), shift(-by))),
+        (...input: Input) => times(homography(...input), shift(by)),
+        (...input: Input) => times(shift(by), homography(...input)),
       ]),
     },
   ],

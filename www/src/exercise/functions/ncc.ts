@@ -1,6 +1,7 @@
 /** Normalised cross-correlation, by which B99 3.1 compares windows. */
+import { dot } from "../../shared/linear";
 import { described, type FunctionExercise } from "../judging/judge";
-import { dot, type Vector } from "../judging/linear";
+import type { Vector } from "../judging/linear";
 import { between, normal, type Random } from "../judging/random";
 
 type Input = readonly [a: Vector, b: Vector];

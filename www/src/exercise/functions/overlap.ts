@@ -1,5 +1,5 @@
 /** Do two stretches of a line have a part in common? The weak constraint of the epipolar beam, B99 3.1. */
-import { described, type FunctionExercise } from "../judging/judge";
+import { type FunctionExercise, numberProblem } from "../judging/judge";
 import { between } from "../judging/random";
 
 type Interval = readonly [number, number];
@@ -44,10 +44,7 @@ function signedOverlap(a, b) {
     const common = Math.min(2 * half, 2 * other, half + other - Math.abs(away));
     return { input: [a, b], error: (answer) => Math.abs(answer - common) };
   },
-  formProblem: (answer) =>
-    typeof answer === "number" && Number.isFinite(answer)
-      ? null
-      : `Return one number, pixels; this is ${described(answer)}.`,
+  formProblem: (answer) => numberProblem(answer, "pixels"),
   isSame: (a, b) => Math.abs(a - b) < 1e-6,
   mistakes: [
     {

@@ -1,6 +1,7 @@
 /** New lines where two planes meet: B99 4.2. */
-import { described, type FunctionExercise } from "../judging/judge";
-import { applied, crossMatrix, dot, inverse, type Vector } from "../judging/linear";
+import { add, apply, cross, dot, inverse, norm, scaled, sub, unit } from "../../shared/linear";
+import { described, type FunctionExercise, isVector } from "../judging/judge";
+import type { Vector } from "../judging/linear";
 import { between, plantedPoint, type Random } from "../judging/random";
 
 type Input = readonly [n: Vector, d: number, m: Vector, e: number];
@@ -9,14 +10,10 @@ interface Line {
   direction: Vector;
 }
 
-const cross = (a: Vector, b: Vector) => applied(crossMatrix(a), b);
-const unit = (a: Vector) => a.map((value) => value / Math.hypot(...a));
-const less = (a: Vector, b: Vector) => a.map((value, i) => value - (b[i] ?? Number.NaN));
-
 /** The point of the line that is next to the origin, and its direction. */
 function meet(n: Vector, d: number, m: Vector, e: number): Line {
   const direction = cross(n, m);
-  return { point: applied(inverse([n, m, direction]), [d, e, 0]), direction };
+  return { point: apply(inverse([n, m, direction]), [d, e, 0]), direction };
 }
 
 /** Of a roof: its normal points up. */
@@ -27,7 +24,7 @@ function roof(random: Random, azimuth: number): number[] {
 
 /** Of a point from a line. */
 function distance(point: Vector, line: Line): number {
-  return Math.hypot(...cross(less(point, line.point), unit(line.direction)));
+  return norm(cross(sub(point, line.point), unit(line.direction)));
 }
 
 export const lineFromPlanes: FunctionExercise<Input, Line> = {
@@ -64,22 +61,20 @@ function lineFromPlanes(n, d, m, e) {
       input: [n, dot(n, on), m, dot(m, on)],
       // Where the line is 10 m from its point, and at the point itself.
       error: ({ point, direction }) => {
-        const far = point.map((value, i) => value + 10 * (unit(direction)[i] ?? Number.NaN));
+        const far = add(point, unit(direction), 10);
         return Math.max(distance(point, truth), distance(far, truth));
       },
     };
   },
   formProblem: (answer) => {
     const { point, direction } = (answer ?? {}) as Partial<Line>;
-    const isVector = (of: unknown) =>
-      Array.isArray(of) && of.length === 3 && of.every((value) => Number.isFinite(value));
-    return isVector(point) && isVector(direction)
+    return isVector(point, 3) && isVector(direction, 3)
       ? null
       : `Return { point, direction } with three numbers each; this is ${described(answer)}.`;
   },
   isSame: (a, b) => {
     const [u, v] = [unit(a.direction), unit(b.direction)];
-    return Math.hypot(...cross(u, v)) < 1e-6 && distance(b.point, a) < 1e-5 * (1 + Math.hypot(...a.point));
+    return norm(cross(u, v)) < 1e-6 && distance(b.point, a) < 1e-5 * (1 + norm(a.point));
   },
   mistakes: [
     {
@@ -91,27 +86,22 @@ function lineFromPlanes(n, d, m, e) {
       name: "sum for cross product",
       says: "The direction is a sum or difference of the normals, which lies in neither plane. What is perpendicular to both normals is their cross product.",
       variants: [
-        (n, d, m, e) => ({ ...meet(n, d, m, e), direction: n.map((value, i) => value + (m[i] ?? 0)) }),
-        (n, d, m, e) => ({ ...meet(n, d, m, e), direction: less(n, m) }),
+        (n, d, m, e) => ({ ...meet(n, d, m, e), direction: add(n, m) }),
+        (n, d, m, e) => ({ ...meet(n, d, m, e), direction: sub(n, m) }),
       ],
     },
     {
       name: "point of one plane",
       says: "The point lies in one of the planes only: d n is the foot of the origin in the first plane, e m in the second. It must fulfil both equations.",
       variants: [
-        (n, d, m) => ({ point: n.map((value) => d * value), direction: cross(n, m) }),
-        (n, _, m, e) => ({ point: m.map((value) => e * value), direction: cross(n, m) }),
+        (n, d, m) => ({ point: scaled(n, d), direction: cross(n, m) }),
+        (n, _, m, e) => ({ point: scaled(m, e), direction: cross(n, m) }),
       ],
     },
     {
       name: "feet added",
       says: "d n + e m lies in neither plane: the normals are not perpendicular to each other, so that each step leaves the other plane.",
-      variants: [
-        (n, d, m, e) => ({
-          point: n.map((value, i) => d * value + e * (m[i] ?? 0)),
-          direction: cross(n, m),
-        }),
-      ],
+      variants: [(n, d, m, e) => ({ point: add(scaled(n, d), m, e), direction: cross(n, m) })],
     },
     {
       name: "point and direction exchanged",

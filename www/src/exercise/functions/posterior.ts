@@ -1,5 +1,5 @@
 /** From evidence to a probability: the statistical foundation that B99 5 asks for. */
-import { described, type FunctionExercise } from "../judging/judge";
+import { type FunctionExercise, numberProblem } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between } from "../judging/random";
 
@@ -38,10 +38,7 @@ function posterior(prior, nats) {
     const rest = logOdds(planted) - logOdds(prior) - total(parts);
     return { input: [prior, [...parts, rest]], error: (answer) => Math.abs(answer - planted) };
   },
-  formProblem: (answer) =>
-    typeof answer === "number" && Number.isFinite(answer)
-      ? null
-      : `Return one number, from 0 to 1; this is ${described(answer)}.`,
+  formProblem: (answer) => numberProblem(answer, "from 0 to 1"),
   isSame: (a, b) => Math.abs(a - b) < 1e-7 * (1 + Math.abs(a)),
   mistakes: [
     {

@@ -1,15 +1,14 @@
 /** Where a camera sees a point: x ≃ P X, on which everything rests (B99 3.1; W96 3.2). */
+import { add, apply, type Mat, norm, scaled, sub, transpose } from "../../shared/linear";
 import { type FunctionExercise, vectorProblem } from "../judging/judge";
-import { applied, dehomogenised, type Matrix, transposed, type Vector } from "../judging/linear";
+import { dehomogenised, distance, type Vector } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
-type Input = readonly [k: Matrix, r: Matrix, c: Vector, x: Vector];
-
-const less = (a: Vector, b: Vector, sign = 1) => a.map((value, i) => value - sign * (b[i] ?? Number.NaN));
+type Input = readonly [k: Mat, r: Mat, c: Vector, x: Vector];
 
 /** K R (X − C) */
-function imageOf(k: Matrix, r: Matrix, ray: Vector): number[] {
-  return dehomogenised(applied(k, applied(r, ray)));
+function imageOf(k: Mat, r: Mat, ray: Vector): Vector {
+  return dehomogenised(apply(k, apply(r, ray)));
 }
 
 export const project: FunctionExercise<Input, Vector> = {
@@ -35,24 +34,20 @@ function project(K, R, C, X) {
   limit: 1e-3,
   plant: (random) => {
     const { k, r, t, projection } = plantedCamera(random);
-    const centre = applied(transposed(r), t).map((value) => -value);
+    const centre = scaled(apply(transpose(r), t), -1);
     const point = plantedPoint(random);
-    const [u, v] = seen(projection, point);
     return {
       input: [k, r, centre, point],
-      error: (answer) => Math.hypot((answer[0] ?? Number.NaN) - u, (answer[1] ?? Number.NaN) - v),
+      error: (answer) => distance(seen(projection, point), answer),
     };
   },
-  formProblem: (answer) =>
-    Array.isArray(answer) && answer.length === 3
-      ? "These are three numbers: the image is homogeneous still. Divide by the third, and return two."
-      : vectorProblem(answer, 2),
-  isSame: (a, b) => Math.hypot(...less(a, b)) < 1e-6 * (1 + Math.hypot(...a)),
+  formProblem: (answer) => vectorProblem(answer, 2, "image"),
+  isSame: (a, b) => distance(a, b) < 1e-6 * (1 + norm(a)),
   mistakes: [
     {
       name: "R transposed",
       says: "Rᵀ stands where R should. R takes from the world to the camera; files that state the rotation from the camera to the world have its transpose.",
-      variants: [(k, r, c, x) => imageOf(k, transposed(r), less(x, c))],
+      variants: [(k, r, c, x) => imageOf(k, transpose(r), sub(x, c))],
     },
     {
       name: "C for t",
@@ -60,28 +55,28 @@ function project(K, R, C, X) {
       variants: [1, -1].map(
         (sign) =>
           (...[k, r, c, x]: Input) =>
-            dehomogenised(applied(k, less(applied(r, x), c, sign))),
+            dehomogenised(apply(k, add(apply(r, x), c, -sign))),
       ),
     },
     {
       name: "wrong sign",
       says: "C is added to X. The ray goes from the centre to the point: X − C.",
-      variants: [(k, r, c, x) => imageOf(k, r, less(x, c, -1))],
+      variants: [(k, r, c, x) => imageOf(k, r, add(x, c))],
     },
     {
       name: "not divided by the depth",
       says: "These are the first two homogeneous coordinates. Divide by the third one, the depth.",
-      variants: [(k, r, c, x) => applied(k, applied(r, less(x, c))).slice(0, 2)],
+      variants: [(k, r, c, x) => apply(k, apply(r, sub(x, c))).slice(0, 2)],
     },
     {
       name: "K forgotten",
       says: "These are directions in the camera's frame, not pixels: K is missing.",
-      variants: [(_, r, c, x) => dehomogenised(applied(r, less(x, c)))],
+      variants: [(_, r, c, x) => dehomogenised(apply(r, sub(x, c)))],
     },
     {
       name: "principal point forgotten",
       says: "The result counts from the principal point. Pixels count from the corner of the image: add the third column of K.",
-      variants: [(k, r, c, x) => less(imageOf(k, r, less(x, c)), [k[0]?.[2] ?? 0, k[1]?.[2] ?? 0])],
+      variants: [(k, r, c, x) => sub(imageOf(k, r, sub(x, c)), [k[0]?.[2] ?? 0, k[1]?.[2] ?? 0])],
     },
     {
       name: "half a pixel",
@@ -89,13 +84,13 @@ function project(K, R, C, X) {
       variants: [0.5, -0.5].map(
         (by) =>
           (...[k, r, c, x]: Input) =>
-            imageOf(k, r, less(x, c)).map((value) => value + by),
+            imageOf(k, r, sub(x, c)).map((value) => value + by),
       ),
     },
     {
       name: "x and y exchanged",
       says: "u and v have changed places: u counts to the right, by the first row of K.",
-      variants: [(k, r, c, x) => imageOf(k, r, less(x, c)).reverse()],
+      variants: [(k, r, c, x) => [...imageOf(k, r, sub(x, c))].reverse()],
     },
   ],
 };

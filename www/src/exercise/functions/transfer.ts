@@ -1,34 +1,21 @@
 /** A point of two views in a third: what the trifocal tensor does for lines in B99 3.2. */
+import { add, apply, cross, type Mat, norm, transpose } from "../../shared/linear";
 import { type FunctionExercise, vectorProblem } from "../judging/judge";
-import {
-  applied,
-  centreOf,
-  crossMatrix,
-  dehomogenised,
-  type Matrix,
-  product,
-  pseudoInverse,
-  transposed,
-  type Vector,
-} from "../judging/linear";
+import { dehomogenised, distance, fundamental, type Vector } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
-type Input = readonly [f: Matrix, g: Matrix, x: Vector, y: Vector];
+type Input = readonly [f: Mat, g: Mat, x: Vector, y: Vector];
 
 const homogeneous = (x: Vector) => [...x, 1];
 
-function fundamental(p: Matrix, q: Matrix): number[][] {
-  return product(crossMatrix(applied(q, centreOf(p))), product(q, pseudoInverse(p)));
-}
-
 /** Where two lines meet. */
 function meet(a: Vector, b: Vector): number[] {
-  return dehomogenised(applied(crossMatrix(a), b));
+  return dehomogenised(cross(a, b));
 }
 
 /** Where the epipolar lines of both points meet in the third view. */
-function transferred(f: Matrix, g: Matrix, x: Vector, y: Vector): number[] {
-  return meet(applied(f, homogeneous(x)), applied(g, homogeneous(y)));
+function transferred(f: Mat, g: Mat, x: Vector, y: Vector): number[] {
+  return meet(apply(f, homogeneous(x)), apply(g, homogeneous(y)));
 }
 
 export const transferPoint: FunctionExercise<Input, Vector> = {
@@ -57,24 +44,19 @@ function transferPoint(F, G, x, y) {
     const point = plantedPoint(random);
     const [first, second, third] = [plantedCamera(random), plantedCamera(random), plantedCamera(random)].map(
       ({ projection }) => projection,
-    ) as unknown as readonly [Matrix, Matrix, Matrix];
-    const [u, v] = seen(third, point);
+    ) as unknown as readonly [Mat, Mat, Mat];
     return {
       input: [fundamental(first, third), fundamental(second, third), seen(first, point), seen(second, point)],
-      error: (answer) => Math.hypot((answer[0] ?? Number.NaN) - u, (answer[1] ?? Number.NaN) - v),
+      error: (answer) => distance(seen(third, point), answer),
     };
   },
-  formProblem: (answer) =>
-    Array.isArray(answer) && answer.length === 3
-      ? "These are three numbers: the point is homogeneous still. Divide by the third, and return two."
-      : vectorProblem(answer, 2),
-  isSame: (a, b) =>
-    a.every((value, i) => Math.abs(value - (b[i] ?? Number.NaN)) < 1e-5 * (1 + Math.hypot(...a))),
+  formProblem: (answer) => vectorProblem(answer, 2, "point"),
+  isSame: (a, b) => distance(a, b) < 1e-5 * (1 + norm(a)),
   mistakes: [
     {
       name: "transposed",
       says: "Fᵀ and Gᵀ stand where F and G should: the transpose takes a point of the third view to a line of another one.",
-      variants: [(f, g, x, y) => transferred(transposed(f), transposed(g), x, y)],
+      variants: [(f, g, x, y) => transferred(transpose(f), transpose(g), x, y)],
     },
     {
       name: "views exchanged",
@@ -84,23 +66,20 @@ function transferPoint(F, G, x, y) {
     {
       name: "not divided by the third",
       says: "The cross product is homogeneous: its first two numbers are pixels only after a division by the third.",
-      variants: [
-        (f, g, x, y) =>
-          applied(crossMatrix(applied(f, homogeneous(x))), applied(g, homogeneous(y))).slice(0, 2),
-      ],
+      variants: [(f, g, x, y) => cross(apply(f, homogeneous(x)), apply(g, homogeneous(y))).slice(0, 2)],
     },
     {
       name: "1 forgotten",
       says: "The points are not homogeneous: the third coordinate, 1, is missing, and with it the last column of F and G.",
-      variants: [(f, g, x, y) => meet(applied(f, [...x, 0]), applied(g, [...y, 0]))],
+      variants: [(f, g, x, y) => meet(apply(f, [...x, 0]), apply(g, [...y, 0]))],
     },
     {
       name: "lines added",
       says: "The two epipolar lines are added. A sum of lines is a third line through their common point; the point itself is the cross product.",
       variants: [
         (f, g, x, y) => {
-          const [a, b] = [applied(f, homogeneous(x)), applied(g, homogeneous(y))];
-          return dehomogenised(a.map((value, i) => value + (b[i] ?? 0)));
+          const [a, b] = [apply(f, homogeneous(x)), apply(g, homogeneous(y))];
+          return dehomogenised(add(a, b));
         },
       ],
     },

@@ -1,12 +1,13 @@
 /** A point in space from two views: what every 3D line of B99 3.2 rests on. */
+import { type Mat, norm } from "../../shared/linear";
 import { type FunctionExercise, vectorProblem } from "../judging/judge";
-import { leastSquares, type Matrix, type Vector } from "../judging/linear";
+import { distance, leastSquares, type Vector } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
-type Input = readonly [p: Matrix, x: Vector, q: Matrix, y: Vector];
+type Input = readonly [p: Mat, x: Vector, q: Mat, y: Vector];
 
 /** u p₃ − p₁ and v p₃ − p₂ of both views, solved for (X, Y, Z, 1). `sign` −1 makes sums of the differences. */
-function triangulated(p: Matrix, x: Vector, q: Matrix, y: Vector, sign = 1): number[] {
+function triangulated(p: Mat, x: Vector, q: Mat, y: Vector, sign = 1): Vector {
   const rows = (
     [
       [p, x],
@@ -60,17 +61,11 @@ function triangulate(P, x, Q, y) {
         second.projection,
         seen(second.projection, point),
       ],
-      error: (answer) => Math.hypot(...point.map((value, i) => value - (answer[i] ?? Number.NaN))),
+      error: (answer) => distance(point, answer),
     };
   },
-  formProblem: (answer) =>
-    Array.isArray(answer) && answer.length === 4
-      ? "These are four numbers: the point is homogeneous still. Divide by the fourth, and return three."
-      : vectorProblem(answer, 3),
-  isSame: (a, b) => {
-    const size = 1 + Math.hypot(...a);
-    return a.every((value, i) => Math.abs(value - (b[i] ?? Number.NaN)) < 1e-5 * size);
-  },
+  formProblem: (answer) => vectorProblem(answer, 3, "point"),
+  isSame: (a, b) => distance(a, b) < 1e-5 * (1 + norm(a)),
   mistakes: [
     {
       name: "half a pixel",

@@ -81,19 +81,29 @@ function errorWords(error: number, unit: string): string {
     : "beyond measure";
 }
 
+/** Says what is wrong with an answer that should be a finite number. */
+export function numberProblem(answer: unknown, of: string): string | null {
+  return isNumber(answer) ? null : `Return one number, ${of}; this is ${described(answer)}.`;
+}
+
 /** Says what is wrong with an answer that should be rows of finite numbers. */
 export function matrixProblem(answer: unknown, rows: number, columns: number): string | null {
   const isMatrix =
-    Array.isArray(answer) &&
-    answer.length === rows &&
-    answer.every((row) => Array.isArray(row) && row.length === columns && row.every(isNumber));
+    Array.isArray(answer) && answer.length === rows && answer.every((row) => isVector(row, columns));
   return isMatrix ? null : `Return ${rows} rows of ${columns} numbers; this is ${described(answer)}.`;
 }
 
-/** Says what is wrong with an answer that should be so many finite numbers. */
-export function vectorProblem(answer: unknown, length: number): string | null {
-  const isVector = Array.isArray(answer) && answer.length === length && answer.every(isNumber);
-  return isVector ? null : `Return ${length} numbers; this is ${described(answer)}.`;
+/** Says what is wrong with an answer that should be so many finite numbers, and `what` if its last one is still homogeneous. */
+export function vectorProblem(answer: unknown, length: 2 | 3, what: string): string | null {
+  if (Array.isArray(answer) && answer.length === length + 1) {
+    const [all, last, asked] = length === 2 ? ["three", "third", "two"] : ["four", "fourth", "three"];
+    return `These are ${all} numbers: the ${what} is homogeneous still. Divide by the ${last}, and return ${asked}.`;
+  }
+  return isVector(answer, length) ? null : `Return ${length} numbers; this is ${described(answer)}.`;
+}
+
+export function isVector(answer: unknown, length: number): boolean {
+  return Array.isArray(answer) && answer.length === length && answer.every(isNumber);
 }
 
 function isNumber(value: unknown): boolean {

@@ -1,59 +1,30 @@
-/** The linear algebra of the exercises: small, and in the plain arrays that a student writes. */
+/** The linear algebra of the exercises beyond that of all pages: in the plain arrays that a student writes. */
+import {
+  add,
+  apply,
+  crossMatrix,
+  determinant,
+  dot,
+  inverse,
+  type Mat,
+  scaled,
+  times,
+  transpose,
+} from "../../shared/linear";
 
-/** Rows of numbers. */
-export type Matrix = readonly (readonly number[])[];
 export type Vector = readonly number[];
 
-export function dot(a: Vector, b: Vector): number {
-  return a.reduce((sum, value, i) => sum + value * (b[i] ?? Number.NaN), 0);
-}
-
-export function transposed(a: Matrix): number[][] {
-  return (a[0] ?? []).map((_, column) => a.map((row) => row[column] ?? Number.NaN));
-}
-
-export function product(a: Matrix, b: Matrix): number[][] {
-  const columns = transposed(b);
-  return a.map((row) => columns.map((column) => dot(row, column)));
-}
-
-export function applied(a: Matrix, v: Vector): number[] {
-  return a.map((row) => dot(row, v));
-}
-
-export function sum(a: Matrix, b: Matrix, factor = 1): number[][] {
-  return a.map((row, i) => row.map((value, j) => value + factor * (b[i]?.[j] ?? Number.NaN)));
+export function sum(a: Mat, b: Mat, factor = 1): Mat {
+  return a.map((row, i) => add(row, b[i] as Vector, factor));
 }
 
 /** a bᵀ */
-export function outer(a: Vector, b: Vector): number[][] {
-  return a.map((x) => b.map((y) => x * y));
-}
-
-/** [v]×, so that [v]× w = v × w. */
-export function crossMatrix([x = 0, y = 0, z = 0]: Vector): number[][] {
-  return [
-    [0, -z, y],
-    [z, 0, -x],
-    [-y, x, 0],
-  ];
-}
-
-/** Of a 3 x 3 matrix. */
-export function determinant([a = [], b = [], c = []]: Matrix): number {
-  return dot(a, applied(crossMatrix(b), c));
-}
-
-/** Of a 3 x 3 matrix. */
-export function inverse(matrix: Matrix): number[][] {
-  const [a = [], b = [], c = []] = matrix;
-  const scale = 1 / determinant(matrix);
-  const columns = [applied(crossMatrix(b), c), applied(crossMatrix(c), a), applied(crossMatrix(a), b)];
-  return transposed(columns).map((row) => row.map((value) => value * scale));
+export function outer(a: Vector, b: Vector): Mat {
+  return a.map((x) => scaled(b, x));
 }
 
 /** The centre of a 3 x 4 projection, homogeneous: P C = 0. */
-export function centreOf(projection: Matrix): number[] {
+export function centreOf(projection: Mat): Vector {
   return [0, 1, 2, 3].map((left) => {
     const minor = projection.map((row) => row.filter((_, column) => column !== left));
     return (left % 2 === 0 ? 1 : -1) * determinant(minor);
@@ -61,14 +32,19 @@ export function centreOf(projection: Matrix): number[] {
 }
 
 /** P⁺ = Pᵀ (P Pᵀ)⁻¹ of a 3 x 4 projection. */
-export function pseudoInverse(projection: Matrix): number[][] {
-  return product(transposed(projection), inverse(product(projection, transposed(projection))));
+export function pseudoInverse(projection: Mat): Mat {
+  return times(transpose(projection), inverse(times(projection, transpose(projection))));
+}
+
+/** F of two projections: [e′]× P′ P⁺ */
+export function fundamental(p: Mat, q: Mat): Mat {
+  return times(crossMatrix(apply(q, centreOf(p))), times(q, pseudoInverse(p)));
 }
 
 /** The least squares solution of A x = b, by the normal equations of three unknowns. */
-export function leastSquares(a: Matrix, b: Vector): number[] {
-  const t = transposed(a);
-  return applied(inverse(product(t, a)), applied(t, b));
+export function leastSquares(a: Mat, b: Vector): Vector {
+  const t = transpose(a);
+  return apply(inverse(times(t, a)), apply(t, b));
 }
 
 /** From homogeneous to image coordinates. */
@@ -76,8 +52,13 @@ export function dehomogenised([x = 0, y = 0, w = 0]: Vector): [number, number] {
   return [x / w, y / w];
 }
 
+/** How far two vectors are apart; of other lengths they are no number apart. */
+export function distance(a: Vector, b: Vector): number {
+  return Math.hypot(...a.map((value, i) => value - (b[i] ?? Number.NaN)));
+}
+
 /** Do two matrices differ by nothing but a factor? */
-export function isSameUpToScale(a: Matrix, b: Matrix, tolerance = 1e-6): boolean {
+export function isSameUpToScale(a: Mat, b: Mat, tolerance = 1e-6): boolean {
   const [u, v] = [a.flat(), b.flat()];
   const [sizeU, sizeV] = [Math.hypot(...u), Math.hypot(...v)];
   if (!(sizeU > 0 && sizeV > 0)) {

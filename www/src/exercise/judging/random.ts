@@ -1,5 +1,6 @@
 /** Planted configurations: random, but the same from the same seed. */
-import { applied, dehomogenised, type Matrix, product } from "./linear";
+import { apply, type Mat, scaled, times } from "../../shared/linear";
+import { dehomogenised } from "./linear";
 
 export type Random = () => number;
 
@@ -26,12 +27,12 @@ export function normal(random: Random): number {
 
 export interface PlantedCamera {
   /** Focal length and principal point in pixels. */
-  k: number[][];
+  k: Mat;
   /** From the world to the camera: x right, y down, z forward. */
-  r: number[][];
+  r: Mat;
   /** R X + t. */
   t: number[];
-  projection: number[][];
+  projection: Mat;
 }
 
 /** An aerial camera, some 100 m above the ground, turned any way about the vertical and a little tilted. */
@@ -49,22 +50,22 @@ export function plantedCamera(random: Random): PlantedCamera {
     [0, 0, -1],
   ];
   const tilt = () => between(random, 0.05, 0.15) * (random() < 0.5 ? -1 : 1);
-  const r = product(turnX(tilt()), product(turnY(tilt()), product(down, turnZ(between(random, 0.3, 1.2)))));
-  const t = applied(r, centre).map((value) => -value);
+  const r = times(turnX(tilt()), times(turnY(tilt()), times(down, turnZ(between(random, 0.3, 1.2)))));
+  const t = scaled(apply(r, centre), -1);
   return { k, r, t, projection: projectionOf(k, r, t) };
 }
 
 /** K [R | t] */
-export function projectionOf(k: Matrix, r: Matrix, t: readonly number[]): number[][] {
-  return product(
+export function projectionOf(k: Mat, r: Mat, t: readonly number[]): Mat {
+  return times(
     k,
     r.map((row, i) => [...row, t[i] ?? 0]),
   );
 }
 
 /** Where a point of the world is seen. */
-export function seen(projection: Matrix, point: readonly number[]): [number, number] {
-  return dehomogenised(applied(projection, [...point, 1]));
+export function seen(projection: Mat, point: readonly number[]): [number, number] {
+  return dehomogenised(apply(projection, [...point, 1]));
 }
 
 /** On a roof or on the ground. */
@@ -72,7 +73,7 @@ export function plantedPoint(random: Random): [number, number, number] {
   return [between(random, -15, 15), between(random, -15, 15), between(random, 0, 12)];
 }
 
-function turnX(angle: number): number[][] {
+function turnX(angle: number): Mat {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   return [
     [1, 0, 0],
@@ -81,7 +82,7 @@ function turnX(angle: number): number[][] {
   ];
 }
 
-function turnY(angle: number): number[][] {
+function turnY(angle: number): Mat {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   return [
     [c, 0, s],
@@ -90,7 +91,7 @@ function turnY(angle: number): number[][] {
   ];
 }
 
-function turnZ(angle: number): number[][] {
+function turnZ(angle: number): Mat {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   return [
     [c, -s, 0],

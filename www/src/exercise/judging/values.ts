@@ -7,8 +7,6 @@ export function stepped(random: Random, low: number, high: number, step: number)
   return Number((steps * step).toFixed(6));
 }
 
-export const DEGREE = Math.PI / 180;
-
 /** In the figures that a solution shows. */
 export function figures(value: number, count = 4): string {
   return String(Number(value.toPrecision(count)));

@@ -1,6 +1,7 @@
 /** One camera: how large a pixel is on the ground, and where a direction is seen. */
+import { DEGREE } from "../../shared/linear";
 import { numberExercise } from "../judging/judgeNumber";
-import { DEGREE, figures, stepped } from "../judging/values";
+import { figures, stepped } from "../judging/values";
 
 export const groundPixel = numberExercise({
   name: "groundPixel",

@@ -1,6 +1,7 @@
 /** Object space and evidence: azimuths, bits and nats. */
+import { DEGREE } from "../../shared/linear";
 import { numberExercise } from "../judging/judgeNumber";
-import { DEGREE, figures, stepped } from "../judging/values";
+import { figures, stepped } from "../judging/values";
 
 export const azimuthOfEave = numberExercise({
   name: "azimuthOfEave",

@@ -1,6 +1,7 @@
 /** Planes and roofs: angles, heights, and what a wrong plane does to an image. */
+import { DEGREE } from "../../shared/linear";
 import { numberExercise } from "../judging/judgeNumber";
-import { DEGREE, figures, stepped } from "../judging/values";
+import { figures, stepped } from "../judging/values";
 
 export const slopeOfHip = numberExercise({
   name: "slopeOfHip",

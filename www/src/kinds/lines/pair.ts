@@ -1,5 +1,6 @@
 /** A pair of parallel lines in space, its window, and the image lines inside it (W96 3.6, figures 10 and 11). */
 import { PAIR_WORDS } from "../../app/parts/reasonText";
+import { add, dot, norm, sub, unit } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import type { PlaneCandidate, PlaneTrace, Vec3 } from "../../shared/records";
 import type { Results } from "../../stages/list";
@@ -82,14 +83,12 @@ export function windowOf(
   if (a === undefined || b === undefined || c === undefined || d === undefined) {
     return null;
   }
-  const u = unit([b[0] - a[0], b[1] - a[1], b[2] - a[2]]);
+  const u = unit(sub(b, a));
   const [first, second] = [foot(a, u), foot(c, u)];
-  const width = Math.hypot(second[0] - first[0], second[1] - first[1], second[2] - first[2]);
+  const across = sub(second, first);
+  const width = norm(across);
   /** `t` along the lines, `w` from the first to the second. */
-  const at = (t: number, w: number): Vec3 => {
-    const on = (k: 0 | 1 | 2) => first[k] + t * u[k] + ((second[k] - first[k]) * w) / width;
-    return [on(0), on(1), on(2)];
-  };
+  const at = (t: number, w: number) => add(add(first, u, t), across, w / width);
   const reach = [a, b, c, d].map((p) => dot(p, u));
   const [from, to] = [Math.min(...reach), Math.max(...reach)];
   return {
@@ -101,17 +100,7 @@ export function windowOf(
   };
 }
 
-function unit(v: Vec3): Vec3 {
-  const length = Math.hypot(...v);
-  return [v[0] / length, v[1] / length, v[2] / length];
-}
-
-function dot(a: Vec3, b: Vec3): number {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /** Where the line through a point cuts the plane across it through the origin. */
 function foot(p: Vec3, u: Vec3): Vec3 {
-  const t = dot(p, u);
-  return [p[0] - t * u[0], p[1] - t * u[1], p[2] - t * u[2]];
+  return add(p, u, -dot(p, u));
 }

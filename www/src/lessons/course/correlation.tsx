@@ -1,13 +1,6 @@
 /** Lesson 3: are two windows the same piece of the world? */
-
 import { computed, signal } from "@preact/signals";
 import { Choice } from "../../app/parts/Choice";
-import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
-import { metres, num, pixels } from "../parts/say";
-import { realFigure } from "../scene/RealFigure";
-import { atHeight, fundamental, imageOf, planeHomography, projection } from "../toy/camera";
-import { aerial, CORNERS, photograph, surfaceAt } from "../toy/house";
 import {
   apply3,
   clipLine,
@@ -17,8 +10,14 @@ import {
   mix,
   nearestParameter,
   point2,
-  type Vec2,
-} from "../toy/linear";
+} from "../../shared/linear";
+import type { Vec2 } from "../../shared/records";
+import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "../parts/draw";
+import type { Lesson } from "../parts/lesson";
+import { metres, num, pixels } from "../parts/say";
+import { realFigure } from "../scene/RealFigure";
+import { atHeight, fundamental, imageOf, planeHomography, projection } from "../toy/camera";
+import { aerial, CORNERS, photograph, surfaceAt } from "../toy/house";
 import { meanOf, meanSquare, ncc, planeAt, relit, warpedWindow, windowAt } from "../toy/windows";
 
 /** Nearer to each other than in other lessons, as on one strip: B99 matches neighbouring views for this. */

@@ -1,17 +1,10 @@
 /** Lesson 2: where a point of one view may be in another. */
 import { signal } from "@preact/signals";
-import { Dot, Handle, Label, Line, Shape, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
-import { DEGREE, degrees, metres, num, pixels, place } from "../parts/say";
-import { ImagePane, Space, seen } from "../parts/scene";
-import { LinesInViews } from "../scene/LinesInViews";
-import { realFigure } from "../scene/RealFigure";
-import { atDepth, atHeight, centreOf, fundamental, imageOf, projected, projection } from "../toy/camera";
-import { aerial, CORNERS, VIEWS } from "../toy/house";
 import {
   apply3,
   clamp,
   clipLine,
+  DEGREE,
   determinant,
   distance2,
   dot,
@@ -20,9 +13,16 @@ import {
   mix,
   nearestParameter,
   point2,
-  type Vec2,
-  type Vec3,
-} from "../toy/linear";
+} from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
+import { Dot, Handle, Label, Line, Shape, Slider } from "../parts/draw";
+import type { Lesson } from "../parts/lesson";
+import { degrees, metres, num, pixels, place } from "../parts/say";
+import { ImagePane, Space, seen } from "../parts/scene";
+import { LinesInViews } from "../scene/LinesInViews";
+import { realFigure } from "../scene/RealFigure";
+import { atDepth, atHeight, centreOf, fundamental, imageOf, projected, projection } from "../toy/camera";
+import { aerial, CORNERS, VIEWS } from "../toy/house";
 
 const [FIRST, SECOND] = VIEWS;
 const F = fundamental(projection(FIRST), projection(SECOND));

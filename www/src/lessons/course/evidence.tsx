@@ -1,6 +1,8 @@
 /** Lesson 10: no row of thresholds, one sum. */
 import { computed, signal } from "@preact/signals";
 import { counted } from "../../app/parts/counted";
+import { clamp } from "../../shared/linear";
+import type { Vec2 } from "../../shared/records";
 import { Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { num } from "../parts/say";
@@ -16,7 +18,6 @@ import {
   reliability,
   stream,
 } from "../toy/evidence";
-import { clamp, type Vec2 } from "../toy/linear";
 
 const signed = (value: number, digits = 1) => `${value > 0 ? "+" : ""}${num(value, digits)}`;
 const percent = (p: number, digits = 0) => `${num(100 * p, digits)} %`;

@@ -1,15 +1,15 @@
 /** Lesson 7: a plane maps image to image; one angle of it is free, and the images choose it. */
-
 import { computed, signal } from "@preact/signals";
 import { Choice } from "../../app/parts/Choice";
+import { clamp, DEGREE, distance2 } from "../../shared/linear";
+import type { Vec2 } from "../../shared/records";
 import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
-import { DEGREE, degrees, num, pixels, place } from "../parts/say";
+import { degrees, num, pixels, place } from "../parts/say";
 import { ImagePane } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { type Camera, imageOf, mapped, planeHomography } from "../toy/camera";
 import { aerial, CORNERS, photograph, SLOPE, surfaceAt } from "../toy/house";
-import { clamp, distance2, type Vec2 } from "../toy/linear";
 import { type InterestPoint, ncc, peakOf, planeAt, similarity, warpedWindow } from "../toy/windows";
 
 const FIRST = aerial([-3, -8, 42]);

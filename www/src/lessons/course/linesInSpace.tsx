@@ -1,17 +1,17 @@
 /** Lesson 6: a line in space has four numbers, and its ends are not among them. */
-
 import { signal } from "@preact/signals";
 import { Choice } from "../../app/parts/Choice";
 import { counted } from "../../app/parts/counted";
+import { clamp, DEGREE, mix3 } from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
 import { Curve, Dot, Handle, Line, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
-import { DEGREE, degrees, metres, num, pixels } from "../parts/say";
+import { degrees, metres, num, pixels } from "../parts/say";
 import { ImagePane, OBSERVER, PlaneOfLine, Space, seen } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { atHeight, type Camera, imageOf } from "../toy/camera";
 import { normal, stream } from "../toy/evidence";
 import { ACROSS, aerial, CORNERS } from "../toy/house";
-import { clamp, mix3, type Vec2, type Vec3 } from "../toy/linear";
 import { type Ends2, type Ends3, lineError, lineOfTwo, partBetween } from "../toy/lines";
 
 const [FIRST, SECOND] = ACROSS;

@@ -1,15 +1,16 @@
 /** Lesson 9: W96's way: no image is compared with another, everything meets in space, and the shortest description wins. */
 import { computed, signal } from "@preact/signals";
 import { counted } from "../../app/parts/counted";
+import { clamp, DEGREE } from "../../shared/linear";
+import type { Vec2 } from "../../shared/records";
 import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
-import { DEGREE, degrees, metres, num } from "../parts/say";
+import { degrees, metres, num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
 import { byCount, describe, shortest } from "../toy/description";
 import { azimuthHistogram, crossSum, mainDirection, seenLines } from "../toy/directions";
 import { normal, stream } from "../toy/evidence";
 import { aerial } from "../toy/house";
-import { clamp, type Vec2 } from "../toy/linear";
 
 const viewCount = signal(6);
 const lineCount = signal(200);

@@ -1,7 +1,8 @@
 /** Lesson 1: what a camera does with a point, and why one matrix says it. */
-
 import { signal } from "@preact/signals";
 import { Choice } from "../../app/parts/Choice";
+import { clamp, nearestParameter, point2 } from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
 import { Dot, Drawing, Handle, Label, Line, Shape, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { degrees, metres, num, pixels, place } from "../parts/say";
@@ -9,7 +10,6 @@ import { ImagePane, inFrame, OBSERVER, Space, seen } from "../parts/scene";
 import { PixelInViews } from "../scene/PixelInViews";
 import { atDepth, atHeight, type Camera, depthOf, imageOf, projected, projection } from "../toy/camera";
 import { aerial, CORNERS, VIEWS } from "../toy/house";
-import { clamp, nearestParameter, point2, type Vec2, type Vec3 } from "../toy/linear";
 
 const [FIRST] = VIEWS;
 const ON_RAY: Vec2 = [150, 96];

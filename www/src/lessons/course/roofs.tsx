@@ -1,11 +1,12 @@
 /** Lesson 8: how half-planes become the faces of a roof. */
 import { signal } from "@preact/signals";
+import { clamp, DEGREE, planArea } from "../../shared/linear";
+import type { Vec2 } from "../../shared/records";
 import { Dot, Drawing, Handle, Label, Line, Shape, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
-import { DEGREE, degrees, metres, num } from "../parts/say";
+import { degrees, metres, num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
-import { clamp, type Vec2 } from "../toy/linear";
-import { areaOf, facetOf, heightOf, PLAN, ridgeOf, SIDES, type SideName } from "../toy/roofs";
+import { facetOf, heightOf, PLAN, ridgeOf, SIDES, type SideName } from "../toy/roofs";
 
 const south = signal(30 * DEGREE);
 const north = signal(45 * DEGREE);
@@ -321,7 +322,7 @@ export const ROOFS: Lesson = {
       says: () => {
         const areas = facets()
           .filter(({ ring }) => ring.length > 2)
-          .map(({ side, ring }) => `${side} ${num(areaOf(ring), 0)} m²`);
+          .map(({ side, ring }) => `${side} ${num(planArea(ring), 0)} m²`);
         return `${kindOf()}, ${metres(highest())} high at most. In plan: ${areas.join(", ")}.`;
       },
     },

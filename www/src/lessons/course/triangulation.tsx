@@ -2,6 +2,8 @@
 import { signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { counted } from "../../app/parts/counted";
+import { clamp, ellipseOf, type Mat, norm, sub } from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
 import { Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { metres, num, pixels } from "../parts/say";
@@ -9,7 +11,6 @@ import { ImagePane, Space, seen } from "../parts/scene";
 import { PixelAccuracy } from "../scene/PixelInViews";
 import { atDepth, type Camera, imageOf, projection } from "../toy/camera";
 import { aerial, CORNERS, VIEWS } from "../toy/house";
-import { clamp, ellipseOf, type Mat, norm, sub, type Vec2, type Vec3 } from "../toy/linear";
 import { type Ends3, nearestOnRays } from "../toy/lines";
 import { covarianceOf, reprojectionError, triangulated } from "../toy/triangulation";
 

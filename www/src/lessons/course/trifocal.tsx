@@ -1,16 +1,16 @@
 /** Lesson 4: two views never contradict each other about a line; the third one can. */
-
 import { signal } from "@preact/signals";
 import { Choice } from "../../app/parts/Choice";
+import { clipLine, DEGREE, lineDistance, lineThrough } from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
 import { Dot, Handle, Label, Line, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
-import { DEGREE, degrees, metres, pixels, place } from "../parts/say";
+import { degrees, metres, pixels, place } from "../parts/say";
 import { ImagePane, PlaneOfLine, Space, seen } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { type Camera, imageOf, projection } from "../toy/camera";
 import { normal, stream } from "../toy/evidence";
 import { ACROSS, aerial, CORNERS } from "../toy/house";
-import { clipLine, lineDistance, lineThrough, type Vec2, type Vec3 } from "../toy/linear";
 import {
   type Ends2,
   type Ends3,

@@ -3,7 +3,7 @@ import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useId, useRef } from "preact/hooks";
 import { axesOf, type Frame, pathOf, type Scale, ticks } from "../../app/parts/charts";
-import type { Vec2 } from "../toy/linear";
+import type { Vec2 } from "../../shared/records";
 import { Formula } from "./Formula";
 
 interface DrawingProps {

@@ -1,4 +1,5 @@
 /** Numbers as sentences say them. */
+import { DEGREE } from "../../shared/linear";
 
 /** With a real minus, and no minus before a zero. */
 export function num(value: number, digits = 1): string {
@@ -8,7 +9,6 @@ export function num(value: number, digits = 1): string {
 
 export const metres = (value: number, digits = 1): string => `${num(value, digits)} m`;
 export const pixels = (value: number, digits = 1): string => `${num(value, digits)} px`;
-export const degrees = (radians: number, digits = 0): string => `${num((radians * 180) / Math.PI, digits)}°`;
+export const degrees = (radians: number, digits = 0): string => `${num(radians / DEGREE, digits)}°`;
 export const place = ([x, y]: readonly [number, number], digits = 1): string =>
   `(${num(x, digits)}, ${num(y, digits)})`;
-export const DEGREE = Math.PI / 180;

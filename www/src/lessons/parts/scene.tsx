@@ -1,8 +1,9 @@
 /** Drawings of the toy scene: the house in an image, and the house with its cameras from the side. */
 import type { ComponentChildren } from "preact";
+import { add, scaled } from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
 import { atHeight, type Camera, imageOf, lookingAt } from "../toy/camera";
 import { type FaceName, facesIn } from "../toy/house";
-import { add, scaled, type Vec2, type Vec3 } from "../toy/linear";
 import { Dot, Drawing, Label, Line, Shape } from "./draw";
 
 const FACE_CLASS: Readonly<Record<FaceName, string>> = {

@@ -1,8 +1,9 @@
 /** A point of a photograph, and its epipolar lines in the others. */
 import { useSignal } from "@preact/signals";
+import { apply3, clipLine, homogeneous } from "../../shared/linear";
+import type { Vec2 } from "../../shared/records";
 import { Line } from "../parts/draw";
 import { fundamental } from "../toy/camera";
-import { apply3, clipLine, homogeneous, type Vec2 } from "../toy/linear";
 import { Photo, Waiting } from "./Photo";
 import { SceneBar } from "./SceneBar";
 import { type LoadedScene, useScene } from "./useScene";

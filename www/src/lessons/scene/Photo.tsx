@@ -1,9 +1,10 @@
 /** Photographs with marks in their own pixels: whole, to point at, or a part of them, enlarged. */
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
+import { clamp } from "../../shared/linear";
+import type { Vec2 } from "../../shared/records";
 import { Drawing, Handle } from "../parts/draw";
 import { place } from "../parts/say";
-import { clamp, type Vec2 } from "../toy/linear";
 import type { LoadedView } from "./useScene";
 
 /** More pixels than a screen shows are not drawn. */

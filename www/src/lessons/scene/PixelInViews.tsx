@@ -1,9 +1,9 @@
 /** A point of a photograph at a height that the reader turns: where all other photographs see it, and how well it is known. */
 import { useSignal } from "@preact/signals";
+import type { Vec2 } from "../../shared/records";
 import { Line, Slider } from "../parts/draw";
 import { metres } from "../parts/say";
 import { pointAtHeight } from "../toy/camera";
-import type { Vec2 } from "../toy/linear";
 import { covarianceOf } from "../toy/triangulation";
 import { heightsOf, transferred } from "./heights";
 import { Photo, Waiting } from "./Photo";

@@ -1,5 +1,4 @@
 /** Between which heights a scene may lie, from its cameras alone. */
-import { centreOf, partsOf, pointAtHeight, projected } from "../toy/camera";
 import {
   add,
   apply3,
@@ -13,9 +12,9 @@ import {
   scaled,
   sub,
   unit,
-  type Vec2,
-  type Vec3,
-} from "../toy/linear";
+} from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
+import { centreOf, partsOf, pointAtHeight, projected } from "../toy/camera";
 
 export interface Seeing {
   width: number;

@@ -5,7 +5,7 @@ import { OF_SITE } from "../../core/engine";
 import { keyOfFiles } from "../../element/RidgelineFigure";
 import { fetchScene, sceneUrl } from "../../element/sceneFiles";
 import { type SceneState, type SharedScene, sceneOf } from "../../element/sharedScene";
-import type { Mat } from "../toy/linear";
+import type { Mat } from "../../shared/linear";
 import { type Choice, choice } from "./sceneChoice";
 
 export const DEMO_URL = "./demo/";

@@ -15,9 +15,8 @@ import {
   times,
   transpose,
   unit,
-  type Vec2,
-  type Vec3,
-} from "./linear";
+} from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
 
 export interface Camera {
   /** Principal distance, pixels. */

@@ -1,8 +1,9 @@
 /** Main directions and clusters in object space, of the drawn house (W96 3.4 and 3.5). */
+import { lineThrough } from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
 import { type Camera, imageOf, planeOfLine, projection } from "./camera";
 import { normal, stream } from "./evidence";
 import { EDGES } from "./house";
-import { lineThrough, type Vec2, type Vec3 } from "./linear";
 
 export interface SeenLine {
   view: number;

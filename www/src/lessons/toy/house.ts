@@ -1,18 +1,7 @@
 /** The drawn house and its photographs: a gable, ridge from west to east, on level ground; metres, Z up. */
+import { add, apply3, cross, dot, inverse, scaled, sub, transpose, unit } from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
 import { type Camera, calibration, depthOf, imageOf, lookingAt } from "./camera";
-import {
-  add,
-  apply3,
-  cross,
-  dot,
-  inverse,
-  scaled,
-  sub,
-  transpose,
-  unit,
-  type Vec2,
-  type Vec3,
-} from "./linear";
 
 /** Half of its length and width, heights of eaves and ridge. */
 export const HOUSE = { length: 5, width: 4, eave: 5, ridge: 8 } as const;

@@ -1,5 +1,4 @@
 /** Lines in space from lines in images. */
-import { type Camera, imageOf, meetOfPlanes, planeOfLine, projection } from "./camera";
 import {
   add,
   apply3,
@@ -10,9 +9,9 @@ import {
   type Mat,
   scaled,
   sub,
-  type Vec2,
-  type Vec3,
-} from "./linear";
+} from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
+import { type Camera, imageOf, meetOfPlanes, planeOfLine, projection } from "./camera";
 
 export type Ends2 = readonly [Vec2, Vec2];
 export type Ends3 = readonly [Vec3, Vec3];

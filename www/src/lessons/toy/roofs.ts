@@ -57,17 +57,6 @@ function cut(ring: readonly Corner[], value: (at: Corner) => number): Corner[] {
   });
 }
 
-export function areaOf(ring: readonly Corner[]): number {
-  return (
-    Math.abs(
-      ring.reduce((sum, [x, y], i) => {
-        const [u, v] = ring[(i + 1) % ring.length] as Corner;
-        return sum + x * v - u * y;
-      }, 0),
-    ) / 2
-  );
-}
-
 /** Distance from the south eave, and height, of the ridge between the south and the north half-plane. */
 export function ridgeOf(south: number, north: number): { inwards: number; z: number } {
   const [s, n] = [Math.tan(south), Math.tan(north)];

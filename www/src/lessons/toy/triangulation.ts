@@ -1,6 +1,7 @@
 /** A point from several views: the one of least reprojection error, and its covariance. */
+import { add, apply3, inverse, type Mat, point2 } from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
 import { projected } from "./camera";
-import { add, apply3, inverse, type Mat, point2, type Vec2, type Vec3 } from "./linear";
 
 const STEP_M = 1e-4;
 const ROUNDS = 12;

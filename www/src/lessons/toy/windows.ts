@@ -1,7 +1,8 @@
 /** Windows of photographs and how alike they are. */
+import { cross, dot, type Mat, unit } from "../../shared/linear";
+import type { Vec2, Vec3 } from "../../shared/records";
 import { type Camera, mapped, planeHomography } from "./camera";
 import { type Picture, sample } from "./house";
-import { cross, dot, type Mat, unit, type Vec2, type Vec3 } from "./linear";
 
 /** The grey values about a point, `size` by `size`. */
 export function windowAt(picture: Picture, [x, y]: Vec2, size: number): number[] {

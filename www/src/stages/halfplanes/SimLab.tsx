@@ -7,11 +7,10 @@ import { REJECTION_WORDS } from "../../app/parts/reasonText";
 import { bestTheta } from "../../app/selection/inquiry";
 import { questionOf } from "../../kinds/kinds";
 import type { WarpedPicture } from "../../shared/calls";
+import { DEGREE } from "../../shared/linear";
 import { category } from "../../shared/palette";
 import type { SideTrace } from "../../shared/records";
 import { type Figure, viewName } from "../figure";
-
-const DEGREE = Math.PI / 180;
 
 export function SimLab({ figure }: { figure: Figure }) {
   const { side, theta, warped } = figure.detail;

@@ -7,6 +7,7 @@ import { ask } from "../../app/session/session";
 import { results } from "../../app/state/results";
 import { selectionDetail } from "../../app/state/selectionDetail";
 import { select } from "../../app/state/viewState";
+import { DEGREE } from "../../shared/linear";
 import { isRejected, type Side, type SideTrace } from "../../shared/records";
 import type { Results } from "../list";
 import { known, roofLines, type StageStep, stay } from "../tourStep";
@@ -48,8 +49,6 @@ export default [
     isFound: () => selectionDetail.value.side !== null && agreesNowhere(selectionDetail.value.side),
   },
 ] satisfies readonly StageStep[];
-
-const DEGREE = Math.PI / 180;
 
 /** So far from its peak a curve is asked how deep it falls: near enough to be the same peak's flank, far enough to be seen. */
 const AWAY = { least: 25 * DEGREE, most: 45 * DEGREE };

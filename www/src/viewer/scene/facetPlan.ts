@@ -1,4 +1,5 @@
 /** Facets seen from above: what belongs to roofs, and where a facet's name stands. */
+import { edgesOf, isInside } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
 
 /** A border line follows its facet this well, metres: what is farther away is on the ground. */
@@ -27,30 +28,12 @@ export function middleOf(ring: readonly Vec3[]): Vec3 {
   return Math.abs(area) < 1e-9 ? first : [x / area, y / area, z / area];
 }
 
-function isInside([x, y]: Vec2, ring: Ring): boolean {
-  let inside = false;
-  sides(ring, (ax, ay, bx, by) => {
-    if (ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax)) {
-      inside = !inside;
-    }
-  });
-  return inside;
-}
-
 function distanceTo([x, y]: Vec2, ring: Ring): number {
-  let least = Number.POSITIVE_INFINITY;
-  sides(ring, (ax, ay, bx, by) => {
+  const distances = edgesOf(ring).map(([[ax = 0, ay = 0], [bx = 0, by = 0]]) => {
     const [dx, dy] = [bx - ax, by - ay];
     const along = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1);
     const t = Math.min(1, Math.max(0, along));
-    least = Math.min(least, Math.hypot(x - ax - t * dx, y - ay - t * dy));
+    return Math.hypot(x - ax - t * dx, y - ay - t * dy);
   });
-  return least;
-}
-
-function sides(ring: Ring, visit: (ax: number, ay: number, bx: number, by: number) => void): void {
-  ring.forEach(([ax = 0, ay = 0], i) => {
-    const [bx = 0, by = 0] = ring[(i + 1) % ring.length] ?? [];
-    visit(ax, ay, bx, by);
-  });
+  return Math.min(...distances);
 }

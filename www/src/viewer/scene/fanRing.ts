@@ -1,5 +1,6 @@
 /** A half-plane as a strip from its line, for the eye only: it has no width of its own. */
 import { LINE_STRIDE } from "../../shared/flatArrays";
+import { add, cross, norm, scaled, sub, unit } from "../../shared/linear";
 import type { HalfPlane, Vec3 } from "../../shared/records";
 
 /** Width of a fan over the length of its line, and its limits in metres. */
@@ -15,22 +16,15 @@ export function fanRing(halfPlane: HalfPlane, lines: Float64Array): [Vec3, Vec3,
   const at = halfPlane.line * LINE_STRIDE;
   const end = (from: number): Vec3 => [lines[from] ?? 0, lines[from + 1] ?? 0, lines[from + 2] ?? 0];
   const [p0, p1] = [end(at), end(at + 3)];
-  const along: Vec3 = [p1[0] - p0[0], p1[1] - p0[1], p1[2] - p0[2]];
+  const along = sub(p1, p0);
   const away = awayFromLine(halfPlane, unit(along));
-  const width = fanWidth(Math.hypot(...along));
-  const beside = (p: Vec3): Vec3 => [p[0] + width * away[0], p[1] + width * away[1], p[2] + width * away[2]];
-  return [p0, p1, beside(p1), beside(p0)];
+  const width = fanWidth(norm(along));
+  return [p0, p1, add(p1, away, width), add(p0, away, width)];
 }
 
 /** The unit vector in the half-plane across its line: to the left or right of it, seen from above. */
-function awayFromLine({ plane, side }: HalfPlane, [dx, dy, dz]: Vec3): Vec3 {
-  const [nx, ny, nz] = plane.normal;
-  const away = unit([ny * dz - nz * dy, nz * dx - nx * dz, nx * dy - ny * dx]);
-  const isLeft = away[1] * dx - away[0] * dy > 0;
-  return isLeft === (side === "left") ? away : [-away[0], -away[1], -away[2]];
-}
-
-function unit([x, y, z]: Vec3): Vec3 {
-  const length = Math.hypot(x, y, z) || 1;
-  return [x / length, y / length, z / length];
+function awayFromLine({ plane, side }: HalfPlane, along: Vec3): Vec3 {
+  const away = unit(cross(plane.normal, along));
+  const isLeft = away[1] * along[0] - away[0] * along[1] > 0;
+  return scaled(away, isLeft === (side === "left") ? 1 : -1);
 }

@@ -11,6 +11,7 @@ import {
   type Vector2,
   Vector3,
 } from "three";
+import { areaVector, norm } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import { disposeObject, type Layer } from "../scene/layer";
 
@@ -108,19 +109,8 @@ export function measure(points: readonly Vector3[]): Measured {
     planM,
     heightM: step.y,
     slope: Math.atan2(step.y, planM),
-    areaM2: points.length < 3 ? null : areaOf(points),
+    areaM2: points.length < 3 ? null : norm(areaVector(points.map((point) => point.toArray()))),
   };
-}
-
-/** Newell's formula: half the length of the sum of the edges' cross products. */
-function areaOf(points: readonly Vector3[]): number {
-  const first = points[0] as Vector3;
-  const sum = new Vector3();
-  points.forEach((point, i) => {
-    const next = points[(i + 1) % points.length] as Vector3;
-    sum.add(point.clone().sub(first).cross(next.clone().sub(first)));
-  });
-  return sum.length() / 2;
 }
 
 export function buildMeasure(points: readonly Vector3[]): Layer {

@@ -25,24 +25,6 @@ import {
   VIEWS,
 } from "../../../src/lessons/toy/house";
 import {
-  apply3,
-  clipLine,
-  cross,
-  determinant,
-  distance2,
-  dot,
-  homogeneous,
-  lineDistance,
-  lineThrough,
-  mix3,
-  norm,
-  point2,
-  sub,
-  transpose,
-  type Vec2,
-  type Vec3,
-} from "../../../src/lessons/toy/linear";
-import {
   type Ends2,
   lineError,
   lineOfTwo,
@@ -68,6 +50,23 @@ import {
   warpedWindow,
   windowAt,
 } from "../../../src/lessons/toy/windows";
+import {
+  apply3,
+  clipLine,
+  cross,
+  determinant,
+  distance2,
+  dot,
+  homogeneous,
+  lineDistance,
+  lineThrough,
+  mix3,
+  norm,
+  point2,
+  sub,
+  transpose,
+} from "../../../src/shared/linear";
+import type { Vec2, Vec3 } from "../../../src/shared/records";
 
 const [FIRST, SECOND] = VIEWS;
 const POINTS: readonly Vec3[] = [...Object.values(CORNERS), [3, -7, 0], [-6, 2, 11]];

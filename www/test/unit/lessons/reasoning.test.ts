@@ -21,7 +21,8 @@ import {
   stream,
 } from "../../../src/lessons/toy/evidence";
 import { aerial } from "../../../src/lessons/toy/house";
-import { areaOf, facetOf, heightOf, PLAN, ridgeOf, SIDES } from "../../../src/lessons/toy/roofs";
+import { facetOf, heightOf, PLAN, ridgeOf, SIDES } from "../../../src/lessons/toy/roofs";
+import { planArea } from "../../../src/shared/linear";
 
 const DEGREE = Math.PI / 180;
 
@@ -116,7 +117,7 @@ describe("roofs over a rectangle", () => {
 
   it("divide the plan among the lowest half-planes", () => {
     const rings = SIDES.map((side) => facetOf(slopes, side));
-    const total = rings.reduce((sum, ring) => sum + areaOf(ring), 0);
+    const total = rings.reduce((sum, ring) => sum + planArea(ring), 0);
     expect(total).toBeCloseTo(4 * PLAN.length * PLAN.width, 9);
     for (const [i, side] of SIDES.entries()) {
       const ring = rings[i] ?? [];
@@ -131,7 +132,7 @@ describe("roofs over a rectangle", () => {
   it("are gables where a side carries nothing", () => {
     const gable = { ...slopes, east: null, west: null };
     expect(facetOf(gable, "east")).toEqual([]);
-    expect(areaOf(facetOf(gable, "south"))).toBeCloseTo(2 * PLAN.length * PLAN.width, 9);
+    expect(planArea(facetOf(gable, "south"))).toBeCloseTo(2 * PLAN.length * PLAN.width, 9);
   });
 
   it("have the ridge where both half-planes are equally high", () => {

@@ -3,6 +3,7 @@ import "./corrections.css";
 import { signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { facetOf } from "../../../kinds/kinds";
+import { add, edgesOf } from "../../../shared/linear";
 import type { Correction, Facet, NotApplied, Vec3 } from "../../../shared/records";
 import { counted } from "../../parts/counted";
 import { saveFile } from "../../parts/saveFile";
@@ -17,16 +18,7 @@ import { correctionWords, NOT_APPLIED_WORDS } from "./correctionWords";
 import { doubtfulFacets, nextDoubtful } from "./doubtful";
 import { drawn, forgetDrawn, showCorrecting } from "./drawn";
 import { drawEdge, edgeStart, isDrawingEdge } from "./edgeDrawing";
-import {
-  type Ends,
-  edgesOf,
-  nearestEdge,
-  nearestParallel,
-  placeOf,
-  ridgeOf,
-  ringOf,
-  sum,
-} from "./facetGeometry";
+import { type Ends, nearestEdge, nearestParallel, placeOf, ridgeOf, ringOf } from "./facetGeometry";
 import { canRedo, canUndo, change, correct, corrections, remove } from "./history";
 
 /** What is done with the next facet that is selected. */
@@ -145,7 +137,9 @@ function takeSecond(): void {
 }
 
 const origin = (): Vec3 => scene.peek()?.origin ?? [0, 0, 0];
-const worldEnds = ([p, q]: Ends): [Vec3, Vec3] => [sum(p, origin()), sum(q, origin())];
+const worldOf = (p: Vec3): Vec3 => add(p, origin());
+
+const worldEnds = ([p, q]: Ends): [Vec3, Vec3] => [worldOf(p), worldOf(q)];
 
 function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
   const index = selectedFacet();
@@ -215,7 +209,7 @@ function Uncovered() {
     return null;
   }
   const add = () => {
-    const outline = roof.outline.map((p) => sum(p, origin()));
+    const outline = roof.outline.map(worldOf);
     void correct({ correction: "add_facet", outline }, outline[0] ?? null);
   };
   return (
@@ -261,7 +255,7 @@ function Numbers({ facet, place }: { facet: Facet; place: Vec3 }) {
 function Corners({ facet }: { facet: Facet }) {
   const [chosen, choose] = useState(0);
   const corner = facet.outer[chosen % facet.outer.length] as Vec3;
-  const from = sum(corner, origin());
+  const from = worldOf(corner);
   const move = (axis: number) => (metres: number) => {
     const to = from.map((x, i) => (i === axis ? metres : x)) as unknown as Vec3;
     return correct({ correction: "move_corner", from, to, sigma_m: BY_HAND_M }, placeOf(facet, origin()).at);
@@ -344,7 +338,7 @@ function Drawn({ facets, index }: { facets: readonly Facet[]; index: number | nu
   const edge = points.length === 2 ? (points as Ends) : null;
   const beside = edge === null || index === null ? null : nearestEdge(facets, index, edge);
   const add = (ring: readonly Vec3[]) => () => {
-    const outline = ring.map((p) => sum(p, origin()));
+    const outline = ring.map(worldOf);
     forgetDrawn();
     void correct({ correction: "add_facet", outline }, outline[0] ?? null);
   };

@@ -1,5 +1,6 @@
 /** The corrections of the model: data among the parameters, which the core applies as a stage; a step each. */
 import { computed, type ReadonlySignal } from "@preact/signals";
+import { sub } from "../../../shared/linear";
 import type { ParamGroup } from "../../../shared/paramTree";
 import type { Correction, Vec3 } from "../../../shared/records";
 import { runTo, setParam } from "../../session/stageRuns";
@@ -10,7 +11,7 @@ import { scene } from "../../state/scene";
 import { stages } from "../../state/stages";
 import { select } from "../../state/viewState";
 import { correctionWords } from "./correctionWords";
-import { difference, facetAt } from "./facetGeometry";
+import { facetAt } from "./facetGeometry";
 
 type List = readonly Correction[];
 
@@ -43,7 +44,7 @@ export async function change(next: List, what: string, lookAt: Vec3 | null = nul
   const facets = mainResults.value.facets;
   const origin = scene.value?.origin;
   if (lookAt !== null && facets !== null && origin !== undefined) {
-    const index = facetAt(facets, difference(lookAt, origin));
+    const index = facetAt(facets, sub(lookAt, origin));
     select(index < 0 ? null : { kind: "facet", index });
   }
 }

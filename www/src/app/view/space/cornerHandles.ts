@@ -1,17 +1,11 @@
 /** Dots at the corners and edges of the facet that is being corrected, or at the points that were drawn. */
 import { type ReadonlySignal, useSignalEffect } from "@preact/signals";
+import { add, edgesOf, sub } from "../../../shared/linear";
 import type { Vec3 } from "../../../shared/records";
 import type { Viewer } from "../../../viewer/viewer";
 import { BY_HAND_M, selectedFacet } from "../../results/corrections/Corrections";
 import { drawn, isCorrecting, moveDrawn } from "../../results/corrections/drawn";
-import {
-  difference,
-  type Ends,
-  edgesOf,
-  middle,
-  placeOf,
-  sum,
-} from "../../results/corrections/facetGeometry";
+import { type Ends, middle, placeOf } from "../../results/corrections/facetGeometry";
 import { correct } from "../../results/corrections/history";
 import { isBusy } from "../../state/activity";
 import { mainResults } from "../../state/results";
@@ -37,14 +31,14 @@ export function useCornerHandles(viewer: ReadonlySignal<Viewer | null>): void {
     viewer.value?.showHandles([...corners, ...edges.map(middle)], (index, to) => {
       const corner = corners[index];
       if (corner !== undefined) {
-        const [from, there] = [sum(corner, origin), sum(to, origin)];
+        const [from, there] = [add(corner, origin), add(to, origin)];
         void correct({ correction: "move_corner", from, to: there, sigma_m: BY_HAND_M }, lookAt);
         return;
       }
       const edge = edges[index - corners.length] as Ends;
-      const by = difference(to, middle(edge));
-      const from: [Vec3, Vec3] = [sum(edge[0], origin), sum(edge[1], origin)];
-      const moved: [Vec3, Vec3] = [sum(from[0], by), sum(from[1], by)];
+      const by = sub(to, middle(edge));
+      const from: [Vec3, Vec3] = [add(edge[0], origin), add(edge[1], origin)];
+      const moved: [Vec3, Vec3] = [add(from[0], by), add(from[1], by)];
       void correct({ correction: "move_edge", from, to: moved, sigma_m: BY_HAND_M }, lookAt);
     });
   });

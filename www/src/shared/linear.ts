@@ -1,19 +1,30 @@
-/** Small vectors and matrices: rows of numbers. */
-export type Vec2 = readonly [number, number];
-export type Vec3 = readonly [number, number, number];
+/** Small vectors and matrices, in plain arrays, and rings of places in plan. */
+import type { Vec2, Vec3 } from "./records";
+
 /** Rows. */
 export type Mat = readonly (readonly number[])[];
+type Vector = readonly number[];
 
-export const sub = (a: Vec3, b: Vec3): Vec3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-export const add = (a: Vec3, b: Vec3): Vec3 => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-export const scaled = (a: Vec3, by: number): Vec3 => [a[0] * by, a[1] * by, a[2] * by];
-export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-export const norm = (a: Vec3): number => Math.hypot(...a);
-export const unit = (a: Vec3): Vec3 => scaled(a, 1 / norm(a));
-export const cross = (a: Vec3, b: Vec3): Vec3 => [
-  a[1] * b[2] - a[2] * b[1],
-  a[2] * b[0] - a[0] * b[2],
-  a[0] * b[1] - a[1] * b[0],
+export const DEGREE = Math.PI / 180;
+
+export function dot(a: Vector, b: Vector): number {
+  let sum = 0;
+  for (let i = 0; i < a.length; i += 1) {
+    sum += (a[i] as number) * (b[i] as number);
+  }
+  return sum;
+}
+
+export const add = <V extends Vector>(a: V, b: Vector, times = 1): V =>
+  a.map((one, i) => one + times * (b[i] as number)) as unknown as V;
+export const sub = <V extends Vector>(a: V, b: Vector): V => add(a, b, -1);
+export const scaled = <V extends Vector>(a: V, by: number): V => a.map((one) => one * by) as unknown as V;
+export const norm = (a: Vector): number => Math.hypot(...a);
+export const unit = <V extends Vector>(a: V): V => scaled(a, 1 / norm(a));
+export const cross = ([a = 0, b = 0, c = 0]: Vector, [x = 0, y = 0, z = 0]: Vector): Vec3 => [
+  b * z - c * y,
+  c * x - a * z,
+  a * y - b * x,
 ];
 export const distance2 = (a: Vec2, b: Vec2): number => Math.hypot(a[0] - b[0], a[1] - b[1]);
 /** Between two numbers at a fraction. */
@@ -28,31 +39,30 @@ export function transpose(a: Mat): Mat {
 
 export function times(a: Mat, b: Mat): Mat {
   const columns = transpose(b);
-  return a.map((row) =>
-    columns.map((column) => row.reduce((sum, one, i) => sum + one * (column[i] ?? 0), 0)),
-  );
+  return a.map((row) => columns.map((column) => dot(row, column)));
 }
 
-export function apply(a: Mat, v: readonly number[]): number[] {
-  return a.map((row) => row.reduce((sum, one, i) => sum + one * (v[i] ?? 0), 0));
+export function apply(a: Mat, v: Vector): number[] {
+  return a.map((row) => dot(row, v));
 }
 
-export const apply3 = (a: Mat, v: readonly number[]): Vec3 => apply(a, v) as unknown as Vec3;
+export const apply3 = (a: Mat, v: Vector): Vec3 => apply(a, v) as unknown as Vec3;
 
 /** [v]x: the matrix of the cross product with v. */
-export const crossMatrix = ([x, y, z]: Vec3): Mat => [
+export const crossMatrix = ([x = 0, y = 0, z = 0]: Vector): Mat => [
   [0, -z, y],
   [z, 0, -x],
   [-y, x, 0],
 ];
 
-export function determinant(a: Mat): number {
-  const [r, s, t] = a as unknown as readonly [Vec3, Vec3, Vec3];
+/** Of a 3 x 3 matrix. */
+export function determinant([r = [], s = [], t = []]: Mat): number {
   return dot(r, cross(s, t));
 }
 
+/** Of a 3 x 3 matrix. */
 export function inverse(a: Mat): Mat {
-  const [r, s, t] = a as unknown as readonly [Vec3, Vec3, Vec3];
+  const [r = [], s = [], t = []] = a;
   const of = determinant(a);
   return transpose([scaled(cross(s, t), 1 / of), scaled(cross(t, r), 1 / of), scaled(cross(r, s), 1 / of)]);
 }
@@ -112,4 +122,34 @@ export function nearestParameter(curve: (t: number) => Vec2, from: number, to: n
     }
   }
   return best.t;
+}
+
+/** The corners of a ring, each with the next. */
+export function edgesOf<T>(ring: readonly T[]): (readonly [T, T])[] {
+  return ring.map((corner, i) => [corner, ring[(i + 1) % ring.length] as T]);
+}
+
+/** Even-odd rule, in plan. */
+export function isInside([x = 0, y = 0]: Vector, ring: Mat): boolean {
+  return ring.reduce((inside, [ax = 0, ay = 0], i) => {
+    const [bx = 0, by = 0] = ring[(i + 1) % ring.length] ?? [];
+    return ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax) ? !inside : inside;
+  }, false);
+}
+
+/** In plan; positive where the ring runs counter-clockwise. */
+export function planArea(ring: Mat): number {
+  return edgesOf(ring).reduce(
+    (sum, [[ax = 0, ay = 0], [bx = 0, by = 0]]) => sum + (ax * by - bx * ay) / 2,
+    0,
+  );
+}
+
+/** Normal of a ring in space, as long as its area is large. */
+export function areaVector(ring: readonly Vec3[]): Vec3 {
+  const [first = [0, 0, 0]] = ring;
+  return edgesOf(ring).reduce<Vec3>(
+    (sum, [p, q]) => add(sum, cross(sub(p, first), sub(q, first)), 0.5),
+    [0, 0, 0],
+  );
 }
