@@ -1,6 +1,6 @@
 /** The question before the answer: the reader commits, then sees. */
 import { useSignal } from "@preact/signals";
-import { useId } from "preact/hooks";
+import { Slider } from "./parts/draw";
 import { Pieces } from "./parts/Formula";
 import type { Prediction } from "./parts/lesson";
 import { num } from "./parts/say";
@@ -66,28 +66,16 @@ function Estimate({ name, predict }: Of<"estimate">) {
   const guess = guessOf(name);
   const digits = Math.max(0, Math.ceil(-Math.log10(step)));
   const value = useSignal(guess?.value ?? (min + max) / 2);
-  const id = useId();
   const off = value.value - truth();
   return (
     <>
-      <div class="slider">
-        <label for={id}>Your guess</label>
-        <output for={id} class="numbers">
-          {num(value.value, digits)} {unit}
-        </output>
-        <input
-          id={id}
-          type="range"
-          min={min}
-          max={max}
-          step={step}
-          value={value.value}
-          disabled={guess !== undefined}
-          onInput={(event) => {
-            value.value = Number(event.currentTarget.value);
-          }}
-        />
-      </div>
+      <Slider
+        label="Your guess"
+        range={[min, max, step]}
+        says={`${num(value.value, digits)} ${unit}`}
+        of={value}
+        disabled={guess !== undefined}
+      />
       {guess === undefined ? (
         <Reveal onClick={() => commit(name, { value: value.value })} />
       ) : (

@@ -124,6 +124,18 @@ export function nearestParameter(curve: (t: number) => Vec2, from: number, to: n
   return best.t;
 }
 
+/** The same numbers, or other things, with one of them replaced. */
+export const replaced = <P extends readonly unknown[]>(all: P, at: number, by: P[number]): P =>
+  all.with(at, by) as unknown as P;
+
+/** The corners of a rectangle in plan, counter-clockwise. */
+export const rectangle = ([x0, y0]: Vec2, [x1, y1]: Vec2): readonly [Vec2, Vec2, Vec2, Vec2] => [
+  [x0, y0],
+  [x1, y0],
+  [x1, y1],
+  [x0, y1],
+];
+
 /** The corners of a ring, each with the next. */
 export function edgesOf<T>(ring: readonly T[]): (readonly [T, T])[] {
   return ring.map((corner, i) => [corner, ring[(i + 1) % ring.length] as T]);

@@ -1,20 +1,12 @@
 /** Lesson 3: are two windows the same piece of the world? */
 import { computed, signal } from "@preact/signals";
 import { Choice } from "../../app/parts/Choice";
-import {
-  apply3,
-  clipLine,
-  cross,
-  homogeneous,
-  lineThrough,
-  mix,
-  nearestParameter,
-  point2,
-} from "../../shared/linear";
+import { apply3, cross, homogeneous, lineThrough, mix, nearestParameter, point2 } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "../parts/draw";
+import { Bar, Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider, WindowCard } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { metres, num, pixels } from "../parts/say";
+import { ImageLine } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { atHeight, fundamental, imageOf, planeHomography, projection } from "../toy/camera";
 import { aerial, CORNERS, photograph, surfaceAt } from "../toy/house";
@@ -40,34 +32,18 @@ const NAMES = ["A", "B", "C", "D"] as const;
 const reference = computed(() => windowAt(pictures.value[0], PLACE, SIZE));
 const candidate = (i: number) => windowAt(pictures.value[1], inSecond(CANDIDATES[i] as number), SIZE);
 
-function Card(props: {
-  values: readonly number[];
-  size?: number;
-  colour: 1 | 2;
-  title: string;
-  score?: string;
-}) {
-  const { values, size = SIZE, colour, title, score } = props;
-  return (
-    <div class={`window-card s${colour}`}>
-      <Grey values={values} width={size} height={values.length / size} label={`Window ${title}`} />
-      <strong>{title}</strong>
-      {score !== undefined && <span class="numbers">{score}</span>}
-    </div>
-  );
-}
-
 function WhichFigure({ isRevealed }: { isRevealed: boolean }) {
   const own = reference.value;
   return (
     <div class="windows-row">
-      <Card values={own} colour={1} title="First view" />
+      <WindowCard values={own} size={SIZE} colour={1} title="First view" />
       {NAMES.map((name, i) => {
         const values = candidate(i);
         return (
-          <Card
+          <WindowCard
             key={name}
             values={values}
+            size={SIZE}
             colour={2}
             title={name}
             {...(isRevealed && { score: num(ncc(own, values), 2) })}
@@ -78,36 +54,25 @@ function WhichFigure({ isRevealed }: { isRevealed: boolean }) {
   );
 }
 
-const light = signal({ gain: 1, offset: 0 });
-const relitWindow = () => relit(candidate(RIGHT), light.value.gain, light.value.offset);
+const gain = signal(1);
+const offset = signal(0);
+const relitWindow = () => relit(candidate(RIGHT), gain.value, offset.value);
 
 function LightFigure({ isRevealed }: { isRevealed: boolean }) {
   const values = relitWindow();
   return (
     <>
       <div class="windows-row">
-        <Card values={reference.value} colour={1} title="First view" />
-        <Card values={values} colour={2} title="Second view" />
+        <WindowCard values={reference.value} size={SIZE} colour={1} title="First view" />
+        <WindowCard values={values} size={SIZE} colour={2} title="Second view" />
       </div>
-      <Slider
-        symbol="gain"
-        label="contrast"
-        value={light.value.gain}
-        range={[0.2, 1.4, 0.05]}
-        says={num(light.value.gain, 2)}
-        onInput={(gain) => {
-          light.value = { ...light.value, gain };
-        }}
-      />
+      <Slider symbol="gain" label="contrast" of={gain} range={[0.2, 1.4, 0.05]} says={num(gain.value, 2)} />
       <Slider
         symbol="offset"
         label="brightness"
-        value={light.value.offset}
+        of={offset}
         range={[-60, 80, 2]}
-        says={num(light.value.offset, 0)}
-        onInput={(offset) => {
-          light.value = { ...light.value, offset };
-        }}
+        says={num(offset.value, 0)}
       />
       {isRevealed && (
         <p class="muted">
@@ -172,11 +137,9 @@ function AlongFigure() {
             class="s2 on-photo"
             label="Window on the epipolar line"
             says={`height ${metres(h, 2)}, correlation ${num(scoreAt(h), 2)}`}
-            value={h}
             step={0.5}
-            onMove={(to) => {
-              height.value = nearestParameter(inSecond, LOW, HIGH, to);
-            }}
+            of={height}
+            to={(to) => nearestParameter(inSecond, LOW, HIGH, to)}
           />
         </Picture>
       </div>
@@ -188,11 +151,11 @@ function AlongFigure() {
         label="Correlation along the epipolar line"
         height={210}
       >
-        {(toX, toY, frame) => (
+        {({ at, upright }) => (
           <>
-            <Curve points={scores.value.map(([x, c]): Vec2 => [toX(x), toY(c)])} class="s6" />
-            <Line from={[toX(h), frame.top]} to={[toX(h), frame.height - frame.bottom]} class="s2" />
-            <Dot at={[toX(h), toY(scoreAt(h))]} class="s2" />
+            <Curve points={scores.value.map(at)} class="s6" />
+            <Line {...upright(h)} class="s2" />
+            <Dot at={at([h, scoreAt(h)])} class="s2" />
           </>
         )}
       </Plot>
@@ -229,8 +192,8 @@ function WarpFigure() {
         of={shape}
       />
       <div class="windows-row">
-        <Card values={large.value} size={WARPED} colour={1} title="First view" />
-        <Card
+        <WindowCard values={large.value} size={WARPED} colour={1} title="First view" />
+        <WindowCard
           values={values}
           size={WARPED}
           colour={2}
@@ -265,7 +228,6 @@ const pointScore = () => {
 function PointFigure() {
   const x = eavePoint(onEave.value);
   const x2 = corresponding(x);
-  const epipolar = clipLine(apply3(F, homogeneous(x)), SECOND.width, SECOND.height);
   return (
     <>
       <div class="pair">
@@ -276,22 +238,26 @@ function PointFigure() {
             class="s1 on-photo"
             label="Point x on the segment"
             says={`${num(10 * onEave.value)} m along it`}
-            value={onEave.value}
             step={1}
-            onMove={(to) => {
-              onEave.value = nearestParameter(eavePoint, 0, 1, to);
-            }}
+            of={onEave}
+            to={(to) => nearestParameter(eavePoint, 0, 1, to)}
           />
         </Picture>
         <Picture which={1}>
           <Line from={EAVE_LINES[1][0]} to={EAVE_LINES[1][1]} class="s2 on-photo" />
-          {epipolar !== null && <Line from={epipolar[0]} to={epipolar[1]} class="s2 faint on-photo" />}
+          <ImageLine of={apply3(F, homogeneous(x))} camera={SECOND} class="s2 faint on-photo" />
           <Dot at={x2} class="s2 on-photo" />
         </Picture>
       </div>
       <div class="windows-row">
-        <Card values={roofHalf(0, x)} colour={1} title="above x" />
-        <Card values={roofHalf(1, x2)} colour={2} title="above x′" score={num(pointScore(), 2)} />
+        <WindowCard values={roofHalf(0, x)} size={SIZE} colour={1} title="above x" />
+        <WindowCard
+          values={roofHalf(1, x2)}
+          size={SIZE}
+          colour={2}
+          title="above x′"
+          score={num(pointScore(), 2)}
+        />
       </div>
     </>
   );
@@ -339,24 +305,18 @@ function EdgelFigure() {
         yTitle="correlation"
         label="Correlation of every edgel of the eave"
       >
-        {(toX, toY, frame) => (
+        {({ at, level }) => (
           <>
             {edgels.value.map((c, i) => (
-              <rect
+              <Bar
                 key={i.toString()}
-                class={`bar ${c > THRESHOLD ? "s6" : "s0"}`}
-                x={toX(i + 0.15)}
-                width={toX(0.7) - toX(0)}
-                y={Math.min(toY(c), toY(0))}
-                height={Math.abs(toY(c) - toY(0))}
+                from={at([i + 0.15, 0])}
+                to={at([i + 0.85, c])}
+                class={c > THRESHOLD ? "s6" : "s0"}
               />
             ))}
-            <Line
-              from={[frame.left, toY(THRESHOLD)]}
-              to={[frame.width - frame.right, toY(THRESHOLD)]}
-              class="s7 dashed"
-            />
-            <Label at={[frame.width - frame.right, toY(THRESHOLD)]} dy={-5} anchor="end" class="s7">
+            <Line {...level(THRESHOLD)} class="s7 dashed" />
+            <Label at={at([EDGELS, THRESHOLD])} dy={-5} anchor="end" class="s7">
               0.6
             </Label>
           </>
@@ -408,7 +368,7 @@ export const CORRELATION: Lesson = {
         why: () => "Brightness goes with the mean, contrast with the size. Turn both and watch the sentence.",
       },
       says: () =>
-        `At contrast ${num(light.value.gain, 2)} and brightness ${num(light.value.offset, 0)} the correlation is ${num(ncc(reference.value, relitWindow()), 2)}.`,
+        `At contrast ${num(gain.value, 2)} and brightness ${num(offset.value, 0)} the correlation is ${num(ncc(reference.value, relitWindow()), 2)}.`,
     },
     {
       id: "along",

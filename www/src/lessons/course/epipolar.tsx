@@ -1,24 +1,24 @@
 /** Lesson 2: where a point of one view may be in another. */
 import { signal } from "@preact/signals";
 import {
+  add,
   apply3,
   clamp,
-  clipLine,
   DEGREE,
   determinant,
   distance2,
   dot,
   homogeneous,
   lineDistance,
-  mix,
   nearestParameter,
   point2,
+  scaled,
 } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
 import { Dot, Handle, Label, Line, Shape, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { degrees, metres, num, pixels, place } from "../parts/say";
-import { ImagePane, Space, seen } from "../parts/scene";
+import { ImageLine, ImagePane, Space, seen } from "../parts/scene";
 import { LinesInViews } from "../scene/LinesInViews";
 import { realFigure } from "../scene/RealFigure";
 import { atDepth, atHeight, centreOf, fundamental, imageOf, projected, projection } from "../toy/camera";
@@ -37,20 +37,19 @@ const bird = atHeight(FIRST, BIRD, BIRD_HEIGHT);
 const guess = signal<Vec2>([150, 60]);
 
 function EpipolarLine({ of, F: matrix = F, class: name = "s2" }: { of: Vec2; F?: typeof F; class?: string }) {
-  const part = clipLine(apply3(matrix, homogeneous(of)), WIDTH, HEIGHT);
-  return part === null ? null : <Line from={part[0]} to={part[1]} class={name} />;
+  return <ImageLine of={apply3(matrix, homogeneous(of))} camera={SECOND} class={name} />;
 }
 
 function BirdFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <div class="pair">
-      <ImagePane camera={FIRST} title="First view" label="First view" colour={1}>
+      <ImagePane camera={FIRST} colour={1}>
         <Dot at={BIRD} class="s1" />
         <Label at={BIRD} dx={9} dy={5} class="s1 vector">
           x
         </Label>
       </ImagePane>
-      <ImagePane camera={SECOND} title="Second view" label="Second view" colour={2}>
+      <ImagePane camera={SECOND} colour={2}>
         {isRevealed && <EpipolarLine of={BIRD} />}
         {isRevealed && <Dot at={imageOf(SECOND, bird)} class="s2" />}
         <Handle
@@ -58,9 +57,8 @@ function BirdFigure({ isRevealed }: { isRevealed: boolean }) {
           class="s6"
           label="Your guess in the second view"
           says={place(guess.value, 0)}
-          onMove={(to) => {
-            guess.value = inside(to);
-          }}
+          of={guess}
+          to={(to) => inside(to)}
         />
       </ImagePane>
     </div>
@@ -75,13 +73,7 @@ function RayFigure() {
   const [near, far] = [20, 42];
   return (
     <div class="pair">
-      <Space
-        label="The ray in space"
-        cameras={[
-          { name: "C", camera: FIRST, colour: 1 },
-          { name: "C′", camera: SECOND, colour: 2 },
-        ]}
-      >
+      <Space label="The ray in space" cameras={[FIRST, SECOND]}>
         <Shape points={[seen(FIRST.C), seen(SECOND.C), seen(X)]} class="s5 area" />
         <Line from={seen(FIRST.C)} to={seen(ray(far))} class="s1" />
         <Line from={seen(SECOND.C)} to={seen(X)} class="s2" />
@@ -90,16 +82,14 @@ function RayFigure() {
           class="s4"
           label="Point X on the ray"
           says={metres(depth.value)}
-          value={depth.value}
-          onMove={(to) => {
-            depth.value = nearestParameter((s) => seen(ray(s)), near, far, to);
-          }}
+          of={depth}
+          to={(to) => nearestParameter((s) => seen(ray(s)), near, far, to)}
         />
         <Label at={seen(X)} dx={12} dy={-6} class="s4 vector">
           X
         </Label>
       </Space>
-      <ImagePane camera={SECOND} title="Second view" label="The ray in the second view" colour={2}>
+      <ImagePane camera={SECOND} label="The ray in the second view" colour={2}>
         <EpipolarLine of={BIRD} class="s2 faint" />
         <Line from={imageOf(SECOND, ray(near))} to={imageOf(SECOND, X)} class="s2" />
         <Dot at={imageOf(SECOND, X)} class="s2" />
@@ -122,27 +112,25 @@ const productOf = () => {
 function ConstraintFigure() {
   return (
     <div class="pair">
-      <ImagePane camera={FIRST} title="First view" label="First view" colour={1}>
+      <ImagePane camera={FIRST} colour={1}>
         <Handle
           at={left.value}
           class="s1"
           label="x in the first view"
           says={place(left.value, 0)}
-          onMove={(to) => {
-            left.value = inside(to);
-          }}
+          of={left}
+          to={(to) => inside(to)}
         />
       </ImagePane>
-      <ImagePane camera={SECOND} title="Second view" label="Second view" colour={2}>
+      <ImagePane camera={SECOND} colour={2}>
         <EpipolarLine of={left.value} />
         <Handle
           at={right.value}
           class="s2"
           label="x′ in the second view"
           says={place(right.value, 0)}
-          onMove={(to) => {
-            right.value = inside(to);
-          }}
+          of={right}
+          to={(to) => inside(to)}
         />
       </ImagePane>
     </div>
@@ -173,13 +161,7 @@ function PencilFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
       <div class="pair">
-        <Space
-          label="Both cameras"
-          cameras={[
-            { name: "C", camera: lower, colour: 1 },
-            { name: "C′", camera, colour: 2 },
-          ]}
-        >
+        <Space label="Both cameras" cameras={[lower, camera]}>
           <Line from={seen(lower.C)} to={seen(camera.C)} class="s5 thick" />
         </Space>
         <ImagePane
@@ -197,20 +179,14 @@ function PencilFigure({ isRevealed }: { isRevealed: boolean }) {
       {isRevealed && (
         <Slider
           label="direction from the first camera to the second"
-          value={rise.value / DEGREE}
+          of={rise}
+          unit={DEGREE}
           range={[0, 90, 1]}
           says={`${degrees(rise.value)} upwards`}
-          onInput={(value) => {
-            rise.value = value * DEGREE;
-          }}
         />
       )}
     </>
   );
-}
-
-function MatrixFigure() {
-  return <ConstraintFigure />;
 }
 
 /** Heights between which the eave may be, by handles on the beam. */
@@ -220,6 +196,7 @@ const VERGE: readonly [Vec2, Vec2] = [
   imageOf(FIRST, CORNERS.ridgeWest),
 ];
 const onBeam = (end: 0 | 1, h: number): Vec2 => imageOf(SECOND, atHeight(FIRST, VERGE[end], h));
+const middleOfBeam = (h: number): Vec2 => scaled(add(onBeam(0, h), onBeam(1, h)), 0.5);
 
 function BeamFigure() {
   const [low, high] = heights.value;
@@ -230,18 +207,19 @@ function BeamFigure() {
       label={which === 0 ? "Least height" : "Greatest height"}
       says={metres(h)}
       value={h}
-      onMove={(to) => {
-        const found = nearestParameter((t) => onBeam(0, t), -2, 24, to);
-        heights.value = which === 0 ? [Math.min(found, high - 0.5), high] : [low, Math.max(found, low + 0.5)];
+      of={heights}
+      to={(place): Vec2 => {
+        const found = nearestParameter((t) => onBeam(0, t), -2, 24, place);
+        return which === 0 ? [Math.min(found, high - 0.5), high] : [low, Math.max(found, low + 0.5)];
       }}
     />
   );
   return (
     <div class="pair">
-      <ImagePane camera={FIRST} title="A segment of the first view" label="First view" colour={1}>
+      <ImagePane camera={FIRST} title="A segment of the first view" colour={1}>
         <Line from={VERGE[0]} to={VERGE[1]} class="s1 thick" />
       </ImagePane>
-      <ImagePane camera={SECOND} title="Its beam in the second view" label="Second view" colour={2}>
+      <ImagePane camera={SECOND} title="Its beam in the second view" colour={2}>
         <EpipolarLine of={VERGE[0]} class="s2 faint" />
         <EpipolarLine of={VERGE[1]} class="s2 faint" />
         <Shape
@@ -346,9 +324,12 @@ export const EPIPOLAR: Lesson = {
         "The cross product with $e2$ has rank 2, so $F$ has, too: $F e1 = 0v$. The first view's epipole has no epipolar line.",
       ],
       formula: () => `F = [ e2 ] _ × P2 P ^ + = 10 ^ { -3 } matrix { ${rows(F)} }`,
-      figure: MatrixFigure,
+      figure: ConstraintFigure,
       says: () => {
-        const back = apply3(F, point2Homogeneous(projected(projection(FIRST), centreOf(projection(SECOND)))));
+        const back = apply3(
+          F,
+          homogeneous(point2(projected(projection(FIRST), centreOf(projection(SECOND))))),
+        );
         return `The determinant is ${num(determinant(F), 6)}, and $F e1$ is (${back.map((one) => num(one, 4)).join(", ")}). For lines in the first view of points in the second one takes $F ^T$: nothing else is needed.`;
       },
     },
@@ -362,7 +343,7 @@ export const EPIPOLAR: Lesson = {
       figure: BeamFigure,
       says: () => {
         const [low, high] = heights.value;
-        const length = distance2(mid(low), mid(high));
+        const length = distance2(middleOfBeam(low), middleOfBeam(high));
         return `From ${metres(low)} to ${metres(high)} the beam is ${pixels(length, 0)} long: ${pixels(length / (high - low))} for a metre of height.`;
       },
     },
@@ -388,12 +369,3 @@ export const EPIPOLAR: Lesson = {
     },
   ],
 };
-
-function mid(h: number): Vec2 {
-  const [a, b] = [onBeam(0, h), onBeam(1, h)];
-  return [mix(a[0], b[0], 0.5), mix(a[1], b[1], 0.5)];
-}
-
-function point2Homogeneous(x: Vec3): Vec3 {
-  return homogeneous(point2(x));
-}

@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { counted } from "../../app/parts/counted";
 import { clamp } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider } from "../parts/draw";
+import { Bar, Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
@@ -35,37 +35,30 @@ function DensitiesFigure({ isRevealed }: { isRevealed: boolean }) {
       yTitle="density"
       label="Correlations on a plane and beside it"
     >
-      {(toX, toY, frame) => (
+      {({ at, under, upright }) => (
         <>
-          <Curve points={STEPS.map((x): Vec2 => [toX(x), toY(density(OFF_PLANE, x))])} class="s7" />
-          <Curve points={STEPS.map((x): Vec2 => [toX(x), toY(density(ON_PLANE, x))])} class="s4" />
-          <Label at={[toX(0), toY(density(OFF_PLANE, 0))]} dy={-8} anchor="middle" class="s7">
+          <Curve points={STEPS.map((x): Vec2 => at([x, density(OFF_PLANE, x)]))} class="s7" />
+          <Curve points={STEPS.map((x): Vec2 => at([x, density(ON_PLANE, x)]))} class="s4" />
+          <Label at={at([0, density(OFF_PLANE, 0)])} dy={-8} anchor="middle" class="s7">
             beside the plane
           </Label>
-          <Label at={[toX(0.62), toY(2.2)]} anchor="end" class="s4">
+          <Label at={at([0.62, 2.2])} anchor="end" class="s4">
             on the plane
           </Label>
-          <Line
-            from={[toX(0.6), frame.top]}
-            to={[toX(0.6), frame.height - frame.bottom]}
-            class="rule dashed"
-          />
+          <Line {...upright(0.6)} class="rule dashed" />
           {isRevealed && (
             <>
-              <Line from={[toX(c), toY(0)]} to={[toX(c), toY(Math.max(on, off))]} class="s6" />
-              <Dot at={[toX(c), toY(on)]} class="s4" />
-              <Dot at={[toX(c), toY(off)]} class="s7" />
+              <Line from={at([c, 0])} to={at([c, Math.max(on, off)])} class="s6" />
+              <Dot at={at([c, on])} class="s4" />
+              <Dot at={at([c, off])} class="s7" />
               <Handle
-                at={[toX(c), toY(0)]}
+                at={at([c, 0])}
                 class="s6"
                 label="Measured correlation"
                 says={`${num(c, 2)}: ${signed(natsOf(c))} nats`}
-                value={c}
                 step={2.1}
-                onMove={([x]) => {
-                  const inner = (x - frame.left) / (frame.width - frame.left - frame.right);
-                  correlation.value = clamp(Math.round(100 * (2 * inner - 1)) / 100, -0.95, 0.97);
-                }}
+                of={correlation}
+                to={(place) => clamp(Math.round(100 * under(place)) / 100, -0.95, 0.97)}
               />
             </>
           )}
@@ -94,13 +87,7 @@ function Bars({ all, label }: { all: readonly (readonly [name: string, nats: num
         return (
           <g key={name}>
             {i === rows.length - 1 && <Line from={[20, y - 1]} to={[460, y - 1]} class="rule" />}
-            <rect
-              class={`bar ${nats < 0 ? "s7" : "s4"}`}
-              x={Math.min(middle, to)}
-              y={y + 4}
-              width={Math.abs(to - middle)}
-              height={row - 10}
-            />
+            <Bar from={[middle, y + 4]} to={[to, y + row - 6]} class={nats < 0 ? "s7" : "s4"} />
             <Label at={[76, y + 15]} dy={5} anchor="end">
               {name}
             </Label>
@@ -177,14 +164,14 @@ function WeakFigure({ isRevealed }: { isRevealed: boolean }) {
         yTitle="density"
         label="Contrast across an edge that is there, and across nothing"
       >
-        {(toX, toY) => (
+        {({ at }) => (
           <>
-            <Curve points={xs.map((x): Vec2 => [toX(x), toY(bell(x, 0))])} class="s7" />
-            <Curve points={xs.map((x): Vec2 => [toX(x), toY(bell(x, joint))])} class="s4" />
-            <Label at={[toX(0), toY(0.4)]} dy={-8} anchor="middle" class="s7">
+            <Curve points={xs.map((x): Vec2 => at([x, bell(x, 0)]))} class="s7" />
+            <Curve points={xs.map((x): Vec2 => at([x, bell(x, joint)]))} class="s4" />
+            <Label at={at([0, 0.4])} dy={-8} anchor="middle" class="s7">
               nothing
             </Label>
-            <Label at={[toX(joint), toY(0.4)]} dy={-8} anchor="middle" class="s4">
+            <Label at={at([joint, 0.4])} dy={-8} anchor="middle" class="s4">
               {n === 1 ? "an edge" : counted(n, "views")}
             </Label>
           </>
@@ -192,16 +179,7 @@ function WeakFigure({ isRevealed }: { isRevealed: boolean }) {
       </Plot>
       {isRevealed && (
         <>
-          <Slider
-            symbol="mu"
-            label="in each view"
-            value={z}
-            range={[0.5, 4, 0.1]}
-            says={`${num(z)} σ`}
-            onInput={(value) => {
-              contrast.value = value;
-            }}
-          />
+          <Slider symbol="mu" label="in each view" of={contrast} range={[0.5, 4, 0.1]} says={`${num(z)} σ`} />
           <Slider symbol="N" label="views" of={viewCount} range={[1, 6, 1]} says={num(viewCount.value, 0)} />
         </>
       )}
@@ -225,12 +203,9 @@ function HiddenFigure({ isRevealed }: { isRevealed: boolean }) {
         <Slider
           symbol="q"
           label="view does not see the place"
-          value={q}
+          of={hidden}
           range={[0, 0.5, 0.01]}
           says={percent(q)}
-          onInput={(value) => {
-            hidden.value = value;
-          }}
         />
       )}
     </>
@@ -267,14 +242,14 @@ function ReliabilityFigure({ isRevealed }: { isRevealed: boolean }) {
         label="How many candidates are true, by what was stated of them"
         height={320}
       >
-        {(toX, toY) => (
+        {({ at }) => (
           <>
-            <Line from={[toX(0), toY(0)]} to={[toX(1), toY(1)]} class="rule" />
+            <Line from={at([0, 0])} to={at([1, 1])} class="rule" />
             {isRevealed && (
               <>
-                <Curve points={curve().map(([x, y]): Vec2 => [toX(x), toY(y)])} class="s6" />
+                <Curve points={curve().map(([x, y]): Vec2 => at([x, y]))} class="s6" />
                 {curve().map(([x, y]) => (
-                  <Dot key={x} at={[toX(x), toY(y)]} class="s6" />
+                  <Dot key={x} at={at([x, y])} class="s6" />
                 ))}
               </>
             )}

@@ -3,14 +3,14 @@ import { computed, signal } from "@preact/signals";
 import { Choice } from "../../app/parts/Choice";
 import { clamp, DEGREE, distance2 } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "../parts/draw";
+import { Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider, WindowCard } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { degrees, num, pixels, place } from "../parts/say";
 import { ImagePane } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { type Camera, imageOf, mapped, planeHomography } from "../toy/camera";
 import { aerial, CORNERS, photograph, SLOPE, surfaceAt } from "../toy/house";
-import { type InterestPoint, ncc, peakOf, planeAt, similarity, warpedWindow } from "../toy/windows";
+import { type InterestPoint, ncc, peakOf, planeAt, similarity, warpedWindow, windowAt } from "../toy/windows";
 
 const FIRST = aerial([-3, -8, 42]);
 const SECOND = aerial([7, -5, 42]);
@@ -44,22 +44,18 @@ function PlaneFigure({ isRevealed }: { isRevealed: boolean }) {
         />
       )}
       <div class="pair">
-        <ImagePane camera={FIRST} title="First view" label="First view" colour={1}>
-          {isRevealed ? (
-            <Handle
-              at={at.value}
-              class="s1"
-              label="Point x"
-              says={place(at.value, 0)}
-              onMove={([x, y]) => {
-                at.value = [clamp(x, 5, FIRST.width - 5), clamp(y, 5, FIRST.height - 5)];
-              }}
-            />
-          ) : (
-            <Dot at={at.value} class="s1" />
-          )}
+        <ImagePane camera={FIRST} colour={1}>
+          <Handle
+            at={at.value}
+            class="s1"
+            label="Point x"
+            says={place(at.value, 0)}
+            of={at}
+            to={([x, y]): Vec2 => [clamp(x, 5, FIRST.width - 5), clamp(y, 5, FIRST.height - 5)]}
+            isFixed={!isRevealed}
+          />
         </ImagePane>
-        <ImagePane camera={SECOND} title="Second view" label="Second view" colour={2}>
+        <ImagePane camera={SECOND} colour={2}>
           <Line from={taken()} to={really()} class="s7" />
           <Dot at={really()} class="s2" />
           <Dot at={taken()} class="s6" />
@@ -101,12 +97,7 @@ const theta = signal(5 * DEGREE);
 const STRIP = { x: 168, y: 142, size: 33 };
 const strip = () => {
   const { x, y, size } = STRIP;
-  const H = [
-    [1, 0, 0],
-    [0, 1, 0],
-    [0, 0, 1],
-  ];
-  return warpedWindow(shot(0).picture, H, [x, y], size);
+  return windowAt(shot(0).picture, [x, y], size);
 };
 const warped = (angle: number) => {
   const { n, d } = planeAt(EAVE, angle);
@@ -151,9 +142,8 @@ function Section({ isRevealed }: { isRevealed: boolean }) {
         says={degrees(angle)}
         value={angle / DEGREE}
         step={3}
-        onMove={([x, y]) => {
-          theta.value = clamp(Math.atan2(foot[1] - y, x - foot[0]), -75 * DEGREE, 75 * DEGREE);
-        }}
+        of={theta}
+        to={([x, y]) => clamp(Math.atan2(foot[1] - y, x - foot[0]), -75 * DEGREE, 75 * DEGREE)}
       />
     </Drawing>
   );
@@ -163,24 +153,20 @@ function Strips() {
   const [own, other] = [strip(), warped(theta.value)];
   return (
     <div class="windows-row">
-      <div class="window-card s1">
-        <Grey
-          values={own}
-          width={STRIP.size}
-          height={STRIP.size}
-          label="The roof above the eave in the first view"
-        />
-        <strong>First view</strong>
-      </div>
-      <div class="window-card s2">
-        <Grey
-          values={other}
-          width={STRIP.size}
-          height={STRIP.size}
-          label="The second view, warped by the half-plane"
-        />
-        <strong>Second view by H(θ)</strong>
-      </div>
+      <WindowCard
+        values={own}
+        size={STRIP.size}
+        colour={1}
+        title="First view"
+        label="The roof above the eave in the first view"
+      />
+      <WindowCard
+        values={other}
+        size={STRIP.size}
+        colour={2}
+        title="Second view by H(θ)"
+        label="The second view, warped by the half-plane"
+      />
     </div>
   );
 }
@@ -250,23 +236,17 @@ function SimPlot(props: {
       label="Similarity against the angle of the half-plane"
       height={230}
     >
-      {(toX, toY, frame) => (
+      {({ at: place, level, upright }) => (
         <>
-          <Line from={[frame.left, toY(0.4)]} to={[frame.width - frame.right, toY(0.4)]} class="s7 dashed" />
+          <Line {...level(0.4)} class="s7 dashed" />
           {all.map(({ values, class: name }) => (
             <Curve
               key={name}
               class={name}
-              points={values.map((value, i): Vec2 => [toX((ANGLES[i] as number) / DEGREE), toY(value)])}
+              points={values.map((value, i) => place([(ANGLES[i] as number) / DEGREE, value]))}
             />
           ))}
-          {isAtTheta && (
-            <Line
-              from={[toX(theta.value / DEGREE), frame.top]}
-              to={[toX(theta.value / DEGREE), frame.height - frame.bottom]}
-              class="s6 faint"
-            />
-          )}
+          {isAtTheta && <Line {...upright(theta.value / DEGREE)} class="s6 faint" />}
         </>
       )}
     </Plot>

@@ -2,17 +2,17 @@
 import { signal } from "@preact/signals";
 import { Choice } from "../../app/parts/Choice";
 import { counted } from "../../app/parts/counted";
-import { clamp, DEGREE, mix3 } from "../../shared/linear";
+import { clamp, DEGREE, mix3, rectangle, replaced } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
-import { Curve, Dot, Handle, Line, Plot, Slider } from "../parts/draw";
+import { Bar, Curve, Dot, Handle, Line, Plot, Shape, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { degrees, metres, num, pixels } from "../parts/say";
 import { ImagePane, OBSERVER, PlaneOfLine, Space, seen } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { atHeight, type Camera, imageOf } from "../toy/camera";
-import { normal, stream } from "../toy/evidence";
+import { noisy, stream } from "../toy/evidence";
 import { ACROSS, aerial, CORNERS } from "../toy/house";
-import { type Ends2, type Ends3, lineError, lineOfTwo, partBetween } from "../toy/lines";
+import { type Ends2, type Ends3, inView, lineError, lineOfTwo, partBetween } from "../toy/lines";
 
 const [FIRST, SECOND] = ACROSS;
 const TOP_M = 14;
@@ -27,28 +27,24 @@ function FourFigure({ isRevealed }: { isRevealed: boolean }) {
     [a, b, 0],
     [c, d, TOP_M],
   ];
-  const frame = (z: number) => {
-    const corners = (
-      [
-        [-12, -12],
-        [12, -12],
-        [12, 12],
-        [-12, 12],
-      ] as const
-    ).map(([x, y]) => seen([x, y, z]));
-    return <polygon class="outline s5 thin" points={corners.map((p) => p.join()).join(" ")} />;
-  };
+  const frame = (z: number) => (
+    <Shape
+      points={rectangle([-12, -12], [12, 12]).map(([x, y]) => seen([x, y, z]))}
+      class="outline s5 thin"
+    />
+  );
   const handle = (which: 0 | 1, at: Vec3) => (
     <Handle
       at={seen(at)}
       class="s4"
       label={which === 0 ? "Where it meets the ground" : `Where it meets ${TOP_M} m`}
       says={`${metres(at[0])} east, ${metres(at[1])} north`}
-      onMove={(to) => {
-        const [x, y] = atHeight(OBSERVER, to, at[2]);
-        const place: Vec2 = [clamp(x, -12, 12), clamp(y, -12, 12)];
-        feet.value = which === 0 ? [place, feet.value[1]] : [feet.value[0], place];
+      of={feet}
+      to={(place) => {
+        const [x, y] = atHeight(OBSERVER, place, at[2]);
+        return replaced(feet.value, which, [clamp(x, -12, 12), clamp(y, -12, 12)]);
       }}
+      isFixed={!isRevealed}
     />
   );
   return (
@@ -56,23 +52,13 @@ function FourFigure({ isRevealed }: { isRevealed: boolean }) {
       {frame(0)}
       {frame(TOP_M)}
       <Line from={seen(mix3(low, high, -0.15))} to={seen(mix3(low, high, 1.25))} class="s4 thick" />
-      {isRevealed ? (
-        <>
-          {handle(0, low)}
-          {handle(1, high)}
-        </>
-      ) : (
-        <>
-          <Dot at={seen(low)} class="s4" />
-          <Dot at={seen(high)} class="s4" />
-        </>
-      )}
+      {handle(0, low)}
+      {handle(1, high)}
     </Space>
   );
 }
 
 const EAVE: Ends3 = [CORNERS.southEaveWest, CORNERS.southEaveEast];
-const inView = (camera: Camera, [p, q]: Ends3): Ends2 => [imageOf(camera, p), imageOf(camera, q)];
 /** Which part of the eave each view's segment shows, from 0 to 1. */
 const parts = signal<readonly [readonly [number, number], readonly [number, number]]>([
   [0.05, 0.6],
@@ -96,22 +82,18 @@ function EndsFigure({ isRevealed }: { isRevealed: boolean }) {
         label={`${end === 0 ? "West" : "East"} end of the segment`}
         says={`${num(100 * (parts.value[view][end] ?? 0), 0)} % along the eave`}
         value={parts.value[view][end] ?? 0}
-        onMove={([x]) => {
+        of={parts}
+        to={([x]) => {
           const t = clamp((x - whole[0][0]) / (whole[1][0] - whole[0][0]), 0, 1);
           const [from, to] = parts.value[view];
           const now =
             end === 0 ? ([Math.min(t, to - 0.1), to] as const) : ([from, Math.max(t, from + 0.1)] as const);
-          parts.value = view === 0 ? [now, parts.value[1]] : [parts.value[0], now];
+          return replaced(parts.value, view, now);
         }}
       />
     );
     return (
-      <ImagePane
-        camera={camera}
-        title={view === 0 ? "First view" : "Second view"}
-        label={view === 0 ? "First view" : "Second view"}
-        colour={view === 0 ? 1 : 2}
-      >
+      <ImagePane camera={camera} colour={view === 0 ? 1 : 2}>
         <Line from={p} to={q} class={view === 0 ? "s1 thick" : "s2 thick"} />
         {isRevealed && handle(0, p)}
         {isRevealed && handle(1, q)}
@@ -122,13 +104,7 @@ function EndsFigure({ isRevealed }: { isRevealed: boolean }) {
     <div class="pair three">
       {pane(0, FIRST)}
       {pane(1, SECOND)}
-      <Space
-        label="The line in space"
-        cameras={[
-          { name: "C", camera: FIRST, colour: 1 },
-          { name: "C′", camera: SECOND, colour: 2 },
-        ]}
-      >
+      <Space label="The line in space" cameras={[FIRST, SECOND]}>
         <PlaneOfLine camera={FIRST} ends={segmentOf(0)} class="s1 area" down={5} />
         <PlaneOfLine camera={SECOND} ends={segmentOf(1)} class="s2 area" down={5} />
         <Line from={seen(L[0])} to={seen(L[1])} class="s4 thick" />
@@ -142,7 +118,7 @@ const RIDGE: Ends3 = [CORNERS.ridgeWest, CORNERS.ridgeEast];
 const MEASURED: readonly Ends2[] = (() => {
   const random = stream(5);
   return ACROSS.map((camera) =>
-    inView(camera, RIDGE).map(([x, y]): Vec2 => [x + 1.5 * normal(random), y + 1.5 * normal(random)]),
+    inView(camera, RIDGE).map((x) => noisy(x, 1.5, random)),
   ) as unknown as readonly Ends2[];
 })();
 /** Heights of the reader's line above its ends. */
@@ -182,11 +158,11 @@ function FitFigure({ isRevealed }: { isRevealed: boolean }) {
             says={metres(ends.value[end], 2)}
             value={ends.value[end]}
             step={1}
-            onMove={(to) => {
-              const [x, y] = [L[end][0], L[end][1]];
+            of={ends}
+            to={(place) => {
+              const [x, y] = L[end];
               const [low, high] = [seen([x, y, 0])[1], seen([x, y, 16])[1]];
-              const z = clamp((16 * (to[1] - low)) / (high - low), 2, 15);
-              ends.value = end === 0 ? [z, ends.value[1]] : [ends.value[0], z];
+              return replaced(ends.value, end, clamp((16 * (place[1] - low)) / (high - low), 2, 15));
             }}
           />
         ))}
@@ -272,23 +248,18 @@ function AzimuthFigure() {
         yTitle="σ of the height, m"
         label="Standard deviation of the height of an edge against its direction"
       >
-        {(toX, toY, frame) => (
+        {({ at, under }) => (
           <>
-            <Curve points={curve(strips.value).map(([x, y]): Vec2 => [toX(x), toY(y)])} class="s7" />
+            <Curve points={curve(strips.value).map(at)} class="s7" />
             <Handle
-              at={[
-                toX(phi / DEGREE),
-                clamp(toY(heightSigma(camerasOf(strips.value), phi)), frame.top, frame.height),
-              ]}
+              at={at([phi / DEGREE, Math.min(most, heightSigma(camerasOf(strips.value), phi))])}
               class="s6"
               label="Angle between edge and flight"
               says={degrees(phi)}
               value={phi / DEGREE}
               step={5}
-              onMove={([x]) => {
-                const inner = (x - frame.left) / (frame.width - frame.left - frame.right);
-                azimuth.value = clamp(Math.round(90 * inner), 1, 90) * DEGREE;
-              }}
+              of={azimuth}
+              to={(place) => clamp(Math.round(under(place)), 1, 90) * DEGREE}
             />
           </>
         )}
@@ -331,14 +302,14 @@ function GrowFigure() {
         label="Fragments of an edge in three views and the line that they make"
         height={230}
       >
-        {(toX, toY) => (
+        {({ at }) => (
           <>
             {FRAGMENTS.map((own, view) =>
               own.map(([from, to]) => (
                 <Line
                   key={`${view} ${from}`}
-                  from={[toX(10 * from), toY(view + 0.6)]}
-                  to={[toX(10 * to), toY(view + 0.6)]}
+                  from={at([10 * from, view + 0.6])}
+                  to={at([10 * to, view + 0.6])}
                   class={`thick ${VIEW_COLOURS[view]}`}
                 />
               )),
@@ -346,13 +317,11 @@ function GrowFigure() {
             {isShown.map(
               (is, i) =>
                 is && (
-                  <rect
+                  <Bar
                     key={i.toString()}
-                    class="bar s4"
-                    x={toX((10 * i) / MOST_STEPS)}
-                    width={toX(10 / MOST_STEPS) - toX(0) + 0.2}
-                    y={toY(3.85)}
-                    height={toY(3.45) - toY(3.85)}
+                    from={at([(10 * i) / MOST_STEPS, 3.45])}
+                    to={at([(10 * i + 10.1) / MOST_STEPS, 3.85])}
+                    class="s4"
                   />
                 ),
             )}

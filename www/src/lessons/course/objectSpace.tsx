@@ -1,9 +1,9 @@
 /** Lesson 9: W96's way: no image is compared with another, everything meets in space, and the shortest description wins. */
 import { computed, signal } from "@preact/signals";
 import { counted } from "../../app/parts/counted";
-import { clamp, DEGREE } from "../../shared/linear";
+import { add, clamp, DEGREE } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "../parts/draw";
+import { Bar, Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Shape, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { degrees, metres, num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
@@ -33,25 +33,19 @@ function CountFigure({ isRevealed }: { isRevealed: boolean }) {
         yTitle="lines touched"
         label="Work against the number of views"
       >
-        {(toX, toY, frame) => (
+        {({ at, upright }) => (
           <>
+            {isRevealed && <Curve points={counts.map((n): Vec2 => at([n, comparisons(n)]))} class="s7" />}
+            <Curve points={counts.map((n): Vec2 => at([n, accumulated(n)]))} class="s4" />
             {isRevealed && (
-              <Curve points={counts.map((n): Vec2 => [toX(n), toY(comparisons(n))])} class="s7" />
-            )}
-            <Curve points={counts.map((n): Vec2 => [toX(n), toY(accumulated(n))])} class="s4" />
-            {isRevealed && (
-              <Label at={[toX(6.6), toY(comparisons(7))]} anchor="end" class="s7">
+              <Label at={at([6.6, comparisons(7)])} anchor="end" class="s7">
                 image against image
               </Label>
             )}
-            <Label at={[toX(10), toY(accumulated(10))]} dy={-8} anchor="end" class="s4">
+            <Label at={at([10, accumulated(10)])} dy={-8} anchor="end" class="s4">
               into space
             </Label>
-            <Line
-              from={[toX(viewCount.value), frame.top]}
-              to={[toX(viewCount.value), frame.height - frame.bottom]}
-              class="s5 faint"
-            />
+            <Line {...upright(viewCount.value)} class="s5 faint" />
           </>
         )}
       </Plot>
@@ -91,37 +85,28 @@ function DirectionFigure({ isRevealed }: { isRevealed: boolean }) {
         yTitle="length of lines, px"
         label="Lengths of all image lines by azimuth"
       >
-        {(toX, toY, frame) => (
+        {({ at, under, upright }) => (
           <>
             {histogram.value.map((value, bin) => (
-              <rect
+              <Bar
                 key={bin.toString()}
-                class="bar s5"
-                x={toX((180 * bin) / BINS)}
-                width={toX(180 / BINS) - toX(0) - 0.5}
-                y={toY(value)}
-                height={toY(0) - toY(value)}
+                from={at([(180 * bin) / BINS, 0])}
+                to={at([(180 * (bin + 0.9)) / BINS, value])}
+                class="s5"
               />
             ))}
             {angles.map((a, i) => (
-              <Line
-                key={i.toString()}
-                from={[toX(a / DEGREE), frame.top]}
-                to={[toX(a / DEGREE), frame.height - frame.bottom]}
-                class={i === 0 ? "s6" : "s6 dashed"}
-              />
+              <Line key={i.toString()} {...upright(a / DEGREE)} class={i === 0 ? "s6" : "s6 dashed"} />
             ))}
             <Handle
-              at={[toX((angles[0] as number) / DEGREE), frame.top + 8]}
+              at={add(upright((angles[0] as number) / DEGREE).from, [0, 8])}
               class="s6"
               label="Direction alpha"
               says={`${degrees(alpha.value)} and ${degrees(angles[1] as number)}`}
               value={alpha.value / DEGREE}
               step={2.4}
-              onMove={([x]) => {
-                const inner = (x - frame.left) / (frame.width - frame.left - frame.right);
-                alpha.value = clamp(180 * inner, 0, 179.9) * DEGREE;
-              }}
+              of={alpha}
+              to={(place) => clamp(under(place), 0, 179.9) * DEGREE}
             />
           </>
         )}
@@ -200,20 +185,7 @@ function ClusterFigure({ isRevealed }: { isRevealed: boolean }) {
       class="plain"
     >
       {isRevealed && (
-        <polygon
-          class="outline s0"
-          points={(
-            [
-              [-4, 0],
-              [-4, 5],
-              [0, 8],
-              [4, 5],
-              [4, 0],
-            ] as const
-          )
-            .map((p) => inCross(p).join())
-            .join(" ")}
-        />
+        <Shape points={([[-4, 0], ...TRUE_POINTS, [4, 0]] as const).map(inCross)} class="outline s0" />
       )}
       {RAYS.map((ray, i) => {
         const [from, to] = rayIn(ray);
@@ -233,12 +205,11 @@ function ClusterFigure({ isRevealed }: { isRevealed: boolean }) {
         label="Where a line in space might be"
         says={`${counted(own.size, "views")}, ${metres(probe.value[1])} high`}
         value={own.size}
-        onMove={([x, y]) => {
-          probe.value = [
-            clamp((x - CROSS.x) / CROSS.scale, -10, 10),
-            clamp((CROSS.y - y) / CROSS.scale, -1, 12),
-          ];
-        }}
+        of={probe}
+        to={([x, y]): Vec2 => [
+          clamp((x - CROSS.x) / CROSS.scale, -10, 10),
+          clamp((CROSS.y - y) / CROSS.scale, -1, 12),
+        ]}
       />
     </Drawing>
   );
@@ -268,7 +239,7 @@ function DescriptionFigure({ isRevealed }: { isRevealed: boolean }) {
     const part = ROW.slice(from, to);
     return { from, to, mean: part.reduce((sum, one) => sum + one, 0) / part.length };
   });
-  const most = describe(ROW, [], SIGMA).total;
+  const scale = 480 / describe(ROW, [], SIGMA).total;
   return (
     <>
       <Grey values={ROW} width={PIXELS} height={1} label="A row of 64 pixels" class="row-of-pixels" />
@@ -280,38 +251,31 @@ function DescriptionFigure({ isRevealed }: { isRevealed: boolean }) {
         label="Grey values of the row and the stretches that describe them"
         height={250}
       >
-        {(toX, toY, frame) => (
+        {({ at, under, upright }) => (
           <>
             {ROW.map((value, i) => (
-              <Dot key={i.toString()} at={[toX(i + 0.5), toY(value)]} class="s1 small" />
+              <Dot key={i.toString()} at={at([i + 0.5, value])} class="s1 small" />
             ))}
             {parts.map(({ from, to, mean }) => (
-              <Line key={from} from={[toX(from), toY(mean)]} to={[toX(to), toY(mean)]} class="s6 thick" />
+              <Line key={from} from={at([from, mean])} to={at([to, mean])} class="s6 thick" />
             ))}
             {isRevealed &&
-              BEST.map((at) => (
-                <Line
-                  key={`best ${at}`}
-                  from={[toX(at), frame.top]}
-                  to={[toX(at), frame.height - frame.bottom]}
-                  class="s4 dashed"
-                />
-              ))}
-            {breaks.value.map((at, i) => (
+              BEST.map((best) => <Line key={`best ${best}`} {...upright(best)} class="s4 dashed" />)}
+            {breaks.value.map((before, i) => (
               <g key={i.toString()}>
-                <Line from={[toX(at), frame.top]} to={[toX(at), frame.height - frame.bottom]} class="s6" />
+                <Line {...upright(before)} class="s6" />
                 <Handle
-                  at={[toX(at), frame.top + 8]}
+                  at={add(upright(before).from, [0, 8])}
                   class="s6"
                   label={`Break ${i + 1}`}
-                  says={`before pixel ${at}`}
-                  value={at}
-                  step={toX(1) - toX(0)}
-                  onMove={([x]) => {
-                    const inner = (x - frame.left) / (frame.width - frame.left - frame.right);
+                  says={`before pixel ${before}`}
+                  value={before}
+                  step={at([1, 0])[0] - at([0, 0])[0]}
+                  of={breaks}
+                  to={(place) => {
                     const low = (breaks.value[i - 1] ?? 0) + 1;
                     const high = (breaks.value[i + 1] ?? PIXELS) - 1;
-                    breaks.value = breaks.value.with(i, clamp(Math.round(PIXELS * inner), low, high));
+                    return breaks.value.with(i, clamp(Math.round(under(place)), low, high));
                   }}
                 />
               </g>
@@ -334,14 +298,8 @@ function DescriptionFigure({ isRevealed }: { isRevealed: boolean }) {
         </button>
       </div>
       <Drawing width={480} height={44} label={`Model ${num(model, 0)} bits, data ${num(data, 0)} bits`}>
-        <rect class="bar s6" x={0} y={4} width={(480 * model) / most} height={16} />
-        <rect
-          class="bar s1"
-          x={(480 * model) / most}
-          y={4}
-          width={Math.min(480, (480 * data) / most)}
-          height={16}
-        />
+        <Bar from={[0, 4]} to={[scale * model, 20]} class="s6" />
+        <Bar from={[scale * model, 4]} to={[scale * model + Math.min(480, scale * data), 20]} class="s1" />
         <Label at={[0, 22]} dy={14} class="s6">
           model {num(model, 0)}
         </Label>
@@ -374,8 +332,7 @@ const bitsOf = (k: number) => describe(ROW, BY_COUNT.get(k) ?? [], SIGMA);
 function CountBreaksFigure({ isRevealed }: { isRevealed: boolean }) {
   const ks = Array.from({ length: MOST_BREAKS + 1 }, (_, k) => k);
   const most = 700;
-  const curve = (value: (k: number) => number) => (toX: (x: number) => number, toY: (y: number) => number) =>
-    ks.map((k): Vec2 => [toX(k), toY(Math.min(most, value(k)))]);
+  const curve = (value: (k: number) => number) => ks.map((k): Vec2 => [k, Math.min(most, value(k))]);
   return (
     <>
       <Plot
@@ -385,27 +342,23 @@ function CountBreaksFigure({ isRevealed }: { isRevealed: boolean }) {
         yTitle="bits"
         label="Bits of model and deviations against the number of breaks"
       >
-        {(toX, toY, frame) => (
+        {({ at, upright }) => (
           <>
-            <Curve points={curve((k) => bitsOf(k).data)(toX, toY)} class="s1" />
-            {isRevealed && <Curve points={curve((k) => bitsOf(k).model)(toX, toY)} class="s6" />}
-            {isRevealed && <Curve points={curve((k) => bitsOf(k).total)(toX, toY)} class="s0" />}
-            <Label at={[toX(MOST_BREAKS), toY(bitsOf(MOST_BREAKS).data)]} dy={18} anchor="end" class="s1">
+            <Curve points={curve((k) => bitsOf(k).data).map(at)} class="s1" />
+            {isRevealed && <Curve points={curve((k) => bitsOf(k).model).map(at)} class="s6" />}
+            {isRevealed && <Curve points={curve((k) => bitsOf(k).total).map(at)} class="s0" />}
+            <Label at={at([MOST_BREAKS, bitsOf(MOST_BREAKS).data])} dy={18} anchor="end" class="s1">
               deviations
             </Label>
             {isRevealed && (
               <>
-                <Label at={[toX(3), toY(bitsOf(3).model)]} dy={18} class="s6">
+                <Label at={at([3, bitsOf(3).model])} dy={18} class="s6">
                   model
                 </Label>
-                <Label at={[toX(9), toY(bitsOf(9).total)]} dy={-8} anchor="end">
+                <Label at={at([9, bitsOf(9).total])} dy={-8} anchor="end">
                   both
                 </Label>
-                <Line
-                  from={[toX(count.value), frame.top]}
-                  to={[toX(count.value), frame.height - frame.bottom]}
-                  class="s6 faint"
-                />
+                <Line {...upright(count.value)} class="s6 faint" />
               </>
             )}
           </>

@@ -22,26 +22,18 @@ function RayFigure({ isRevealed }: { isRevealed: boolean }) {
   const X = along(distance.value);
   return (
     <div class="pair">
-      <Space
-        label="A camera above the house and one of its rays"
-        cameras={[{ name: "C", camera: FIRST, colour: 1 }]}
-      >
+      <Space label="A camera above the house and one of its rays" cameras={[FIRST]}>
         <Line from={seen(FIRST.C)} to={seen(along(FAR))} class="s1" />
         <Dot at={seen(inFrame(FIRST, ON_RAY))} class="s1" />
-        {isRevealed ? (
-          <Handle
-            at={seen(X)}
-            class="s4"
-            label="Point X on the ray"
-            says={`${metres(distance.value)} from the camera`}
-            value={distance.value}
-            onMove={(to) => {
-              distance.value = nearestParameter((s) => seen(along(s)), 9, FAR, to);
-            }}
-          />
-        ) : (
-          <Dot at={seen(X)} class="s4" />
-        )}
+        <Handle
+          at={seen(X)}
+          class="s4"
+          label="Point X on the ray"
+          says={`${metres(distance.value)} from the camera`}
+          of={distance}
+          to={(to) => nearestParameter((s) => seen(along(s)), 9, FAR, to)}
+          isFixed={!isRevealed}
+        />
         <Label at={seen(X)} dx={12} dy={-6} class="s4 vector">
           X
         </Label>
@@ -92,27 +84,23 @@ function TrianglesFigure({ isRevealed }: { isRevealed: boolean }) {
       <Label at={[middle - 76, film]} anchor="end" dy={4} class="s1">
         <tspan class="letter">ℓ</tspan> {isRevealed ? `= ${pixels(roofPx(Z), 0)}` : ""}
       </Label>
-      {isRevealed ? (
-        <Handle
-          at={[middle, top]}
-          class="s5"
-          label="Height of the camera above the roof"
-          says={metres(Z, 0)}
-          value={Z}
-          step={6}
-          onMove={([, y]) => {
-            above.value = clamp(Math.round((ground - y) / scale), 20, 100);
-          }}
-        />
-      ) : (
-        <Dot at={[middle, top]} class="s5" />
-      )}
+      <Handle
+        at={[middle, top]}
+        class="s5"
+        label="Height of the camera above the roof"
+        says={metres(Z, 0)}
+        step={6}
+        of={above}
+        to={([, y]) => clamp(Math.round((ground - y) / scale), 20, 100)}
+        isFixed={!isRevealed}
+      />
     </Drawing>
   );
 }
 
 const pixel = signal<Vec2>([2.5, 1.5]);
 const CELL = 70;
+const inTwentieths = (place: number, most: number) => clamp(Math.round((20 * place) / CELL) / 20, 0, most);
 
 function PixelFigure({ isRevealed }: { isRevealed: boolean }) {
   const [x, y] = pixel.value;
@@ -152,11 +140,8 @@ function PixelFigure({ isRevealed }: { isRevealed: boolean }) {
             says={place([x, y], 2)}
             value={x}
             step={CELL / 20}
-            onMove={([px, py]) => {
-              const to = (value: number, most: number) =>
-                clamp(Math.round((20 * value) / CELL) / 20, 0, most);
-              pixel.value = [to(px, 6), to(py, 4)];
-            }}
+            of={pixel}
+            to={([px, py]): Vec2 => [inTwentieths(px, 6), inTwentieths(py, 4)]}
           />
         )}
       </g>
@@ -164,19 +149,15 @@ function PixelFigure({ isRevealed }: { isRevealed: boolean }) {
   );
 }
 
-const inner = signal({ f: 450, cx: 160, cy: 120 });
-const calibrated = (): Camera => ({ ...FIRST, ...inner.value });
+const distancePx = signal(450);
+const principal = signal<Vec2>([160, 120]);
 
 function CalibrationFigure() {
-  const { f, cx, cy } = inner.value;
-  const camera = calibrated();
-  const set = (part: Partial<typeof inner.value>) => {
-    inner.value = { ...inner.value, ...part };
-  };
+  const [f, [cx, cy]] = [distancePx.value, principal.value];
   return (
     <>
       <ImagePane
-        camera={camera}
+        camera={{ ...FIRST, f, cx, cy }}
         title="320 × 240 pixels"
         label="The house through this calibration"
         colour={1}
@@ -188,16 +169,16 @@ function CalibrationFigure() {
           class="s5"
           label="Principal point"
           says={place([cx, cy], 0)}
-          onMove={([x, y]) => set({ cx: Math.round(clamp(x, 0, 320)), cy: Math.round(clamp(y, 0, 240)) })}
+          of={principal}
+          to={([x, y]): Vec2 => [Math.round(clamp(x, 0, 320)), Math.round(clamp(y, 0, 240))]}
         />
       </ImagePane>
       <Slider
         symbol="f"
         label="principal distance"
-        value={f}
+        of={distancePx}
         range={[200, 900, 10]}
         says={pixels(f, 0)}
-        onInput={(value) => set({ f: value })}
       />
     </>
   );
@@ -210,16 +191,17 @@ function OrientationFigure() {
   const camera = turned();
   return (
     <div class="pair">
-      <Space label="The camera in space" cameras={[{ name: "C", camera, colour: 1 }]}>
+      <Space label="The camera in space" cameras={[camera]}>
         <Line from={seen(camera.C)} to={seen([camera.C[0], camera.C[1], 0])} class="s5 faint" />
         <Handle
           at={seen(camera.C)}
           class="s5"
           label="Projection centre"
           says={`${metres(camera.C[0])} east, ${metres(camera.C[1])} north`}
-          onMove={(to) => {
-            const [x, y] = atHeight(OBSERVER, to, camera.C[2]);
-            centre.value = [clamp(x, -18, 18), clamp(y, -16, 16), camera.C[2]];
+          of={centre}
+          to={(place): Vec3 => {
+            const [x, y] = atHeight(OBSERVER, place, camera.C[2]);
+            return [clamp(x, -18, 18), clamp(y, -16, 16), camera.C[2]];
           }}
         />
       </Space>
@@ -351,12 +333,12 @@ export const PINHOLE: Lesson = {
         "Drag the principal point: the whole image goes with it. It need not be in the middle; in a crop of a large frame it may lie far outside.",
       ],
       formula: () => {
-        const { f, cx, cy } = inner.value;
+        const [f, [cx, cy]] = [distancePx.value, principal.value];
         return `K = matrix { f 0 cx ; 0 f cy ; 0 0 1 } = matrix { ${f} 0 ${cx} ; 0 ${f} ${cy} ; 0 0 1 }`;
       },
       figure: CalibrationFigure,
       says: () => {
-        const { f, cx, cy } = inner.value;
+        const [f, [cx, cy]] = [distancePx.value, principal.value];
         const angle = Math.atan((320 - cx) / f) + Math.atan(cx / f);
         return `At $f$ = ${pixels(f, 0)} the image is ${degrees(angle)} wide. The axis meets it at ${place([cx, cy], 0)}.`;
       },

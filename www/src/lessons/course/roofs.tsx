@@ -1,6 +1,6 @@
 /** Lesson 8: how half-planes become the faces of a roof. */
 import { signal } from "@preact/signals";
-import { clamp, DEGREE, planArea } from "../../shared/linear";
+import { clamp, DEGREE, planArea, rectangle } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import { Dot, Drawing, Handle, Label, Line, Shape, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
@@ -44,9 +44,8 @@ function RidgeFigure({ isRevealed }: { isRevealed: boolean }) {
             label="Slope of the south half-plane"
             says={degrees(south.value)}
             value={south.value / DEGREE}
-            onMove={([x, y]) => {
-              south.value = clamp(Math.atan2(feet[1] - y, x - feet[0]), 8 * DEGREE, 70 * DEGREE);
-            }}
+            of={south}
+            to={([x, y]) => clamp(Math.atan2(feet[1] - y, x - feet[0]), 8 * DEGREE, 70 * DEGREE)}
           />
           <Handle
             at={endn}
@@ -54,9 +53,8 @@ function RidgeFigure({ isRevealed }: { isRevealed: boolean }) {
             label="Slope of the north half-plane"
             says={degrees(north.value)}
             value={north.value / DEGREE}
-            onMove={([x, y]) => {
-              north.value = clamp(Math.atan2(footn[1] - y, footn[0] - x), 8 * DEGREE, 70 * DEGREE);
-            }}
+            of={north}
+            to={([x, y]) => clamp(Math.atan2(footn[1] - y, footn[0] - x), 8 * DEGREE, 70 * DEGREE)}
           />
         </>
       ) : (
@@ -124,12 +122,7 @@ function EnvelopeFigure({ isRevealed }: { isRevealed: boolean }) {
             ),
         )}
         <Shape
-          points={[
-            inPlan([-PLAN.length, -PLAN.width]),
-            inPlan([PLAN.length, -PLAN.width]),
-            inPlan([PLAN.length, PLAN.width]),
-            inPlan([-PLAN.length, PLAN.width]),
-          ]}
+          points={rectangle([-PLAN.length, -PLAN.width], [PLAN.length, PLAN.width]).map(inPlan)}
           class="measure s5"
         />
         {(
@@ -192,11 +185,9 @@ function GroupFigure() {
         class="s2"
         label="Height of the second half-plane"
         says={`${metres(lift.value, 2)} above the plane of the first`}
-        value={lift.value}
         step={1}
-        onMove={([, y]) => {
-          lift.value = clamp((at(3.2)[1] - y) / CUT.scale, -1.5, 1.5);
-        }}
+        of={lift}
+        to={([, y]) => clamp((at(3.2)[1] - y) / CUT.scale, -1.5, 1.5)}
       />
       <Label at={at(0)} dx={-10} dy={18} anchor="end" class="s1">
         eave
@@ -209,32 +200,28 @@ function GroupFigure() {
 }
 
 /** The facet that bridges two houses: how far it reaches, metres, and how much of its outline is on lines. */
-const bridge = signal({ reach: 9, real: 0.45 });
+const reach = signal(9);
+const real = signal(0.45);
 const TRUE_FACE = { area: 7 * 5, real: 0.9 } as const;
-const bridgeArea = () => bridge.value.reach * 5;
+const bridgeArea = () => reach.value * 5;
 const scoreTrue = TRUE_FACE.area * TRUE_FACE.real;
-const scoreBridge = () => bridgeArea() * bridge.value.real;
+const scoreBridge = () => bridgeArea() * real.value;
 
 function ConflictFigure({ isRevealed }: { isRevealed: boolean }) {
   const scale = 24;
   const [x0, y0] = [30, 70];
-  const box = (x: number, width: number): Vec2[] =>
-    [
-      [x, 0],
-      [x + width, 0],
-      [x + width, 5],
-      [x, 5],
-    ].map(([u = 0, v = 0]): Vec2 => [x0 + scale * u, y0 + scale * v]);
+  const box = (x: number, width: number) =>
+    rectangle([x0 + scale * x, y0], [x0 + scale * (x + width), y0 + scale * 5]);
   const isBridge = scoreBridge() > scoreTrue;
   const from = 5;
-  const end: Vec2 = [x0 + scale * (from + bridge.value.reach), y0 + scale * 2.5];
+  const end: Vec2 = [x0 + scale * (from + reach.value), y0 + scale * 2.5];
   return (
     <>
       <Drawing width={480} height={240} label="A face and a false one that overlaps it, in plan">
         <Shape points={box(0, 7)} class={`outline s4 ${isRevealed && isBridge ? "gone" : ""}`} />
         <Shape points={box(12, 6)} class="measure s5" />
         <Shape
-          points={box(from, bridge.value.reach)}
+          points={box(from, reach.value)}
           class={`outline s7 ${isRevealed && !isBridge ? "gone" : ""}`}
         />
         <Label at={[x0 + 10, y0]} dy={-8} class="s4">
@@ -248,12 +235,11 @@ function ConflictFigure({ isRevealed }: { isRevealed: boolean }) {
             at={end}
             class="s7"
             label="Reach of the bridging facet"
-            says={metres(bridge.value.reach)}
-            value={bridge.value.reach}
+            says={metres(reach.value)}
+            value={reach.value}
             step={scale / 4}
-            onMove={([x]) => {
-              bridge.value = { ...bridge.value, reach: clamp((x - x0) / scale - from, 3, 13) };
-            }}
+            of={reach}
+            to={([x]) => clamp((x - x0) / scale - from, 3, 13)}
           />
         )}
       </Drawing>
@@ -261,12 +247,9 @@ function ConflictFigure({ isRevealed }: { isRevealed: boolean }) {
         <Slider
           symbol="tau"
           label="of the bridge"
-          value={bridge.value.real}
+          of={real}
           range={[0.05, 1, 0.05]}
-          says={num(bridge.value.real, 2)}
-          onInput={(real) => {
-            bridge.value = { ...bridge.value, real };
-          }}
+          says={num(real.value, 2)}
         />
       )}
     </>
@@ -355,7 +338,7 @@ export const ROOFS: Lesson = {
           "Size alone does not win. But drag the bridge out, or give it lines: at some place this rule is wrong. Lesson 10 has a better one.",
       },
       says: () =>
-        `Face: $S$ = ${num(scoreTrue)} m². Bridge: ${num(bridgeArea(), 0)} m² · ${num(bridge.value.real, 2)} = ${num(scoreBridge())} m². ${scoreBridge() > scoreTrue ? "The bridge stays, and it is false." : "The face stays."}`,
+        `Face: $S$ = ${num(scoreTrue)} m². Bridge: ${num(bridgeArea(), 0)} m² · ${num(real.value, 2)} = ${num(scoreBridge())} m². ${scoreBridge() > scoreTrue ? "The bridge stays, and it is false." : "The face stays."}`,
     },
     {
       id: "own-groups",

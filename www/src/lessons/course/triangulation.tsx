@@ -37,12 +37,7 @@ function SkewFigure() {
   const X = found();
   const [x, x2] = measured();
   const mark = (camera: Camera, at: Vec2, colour: 1 | 2) => (
-    <ImagePane
-      camera={camera}
-      title={colour === 1 ? "First view" : "Second view"}
-      label={colour === 1 ? "First view" : "Second view"}
-      colour={colour}
-    >
+    <ImagePane camera={camera} colour={colour}>
       <Line from={at} to={imageOf(camera, X)} class="s7 thick" />
       <Dot at={imageOf(camera, X)} class="s4" />
       {colour === 1 ? (
@@ -53,24 +48,16 @@ function SkewFigure() {
           class="s2"
           label="The measured point of the second view"
           says={`off by ${pixels(off.value)}`}
-          value={off.value}
           step={1}
-          onMove={([, y]) => {
-            off.value = clamp(y - imageOf(SECOND, X0)[1], -25, 25);
-          }}
+          of={off}
+          to={([, y]) => clamp(y - imageOf(SECOND, X0)[1], -25, 25)}
         />
       )}
     </ImagePane>
   );
   return (
     <div class="pair three">
-      <Space
-        label="Two rays in space"
-        cameras={[
-          { name: "C", camera: FIRST, colour: 1 },
-          { name: "C′", camera: SECOND, colour: 2 },
-        ]}
-      >
+      <Space label="Two rays in space" cameras={[FIRST, SECOND]}>
         <Line from={seen(a[0])} to={seen(a[1])} class="s1" />
         <Line from={seen(b[0])} to={seen(b[1])} class="s2" />
         <Line from={seen(p)} to={seen(q)} class="s7 thick" />
@@ -157,11 +144,9 @@ function BaselineFigure({ isRevealed }: { isRevealed: boolean }) {
           class="s5"
           label="Second camera"
           says={`baseline ${metres(B, 0)}`}
-          value={B}
           step={SIDE.scale / 2}
-          onMove={([x]) => {
-            baseline.value = clamp(Math.round((2 * (x - SIDE.width / 2)) / SIDE.scale), 3, 70);
-          }}
+          of={baseline}
+          to={([x]) => clamp(Math.round((2 * (x - SIDE.width / 2)) / SIDE.scale), 3, 70)}
         />
       )}
     </FromSide>
@@ -174,7 +159,9 @@ const ruleOf = (B: number) => ((FLYING_M ** 2 * Math.SQRT2) / (FIRST.f * B)) * S
 function RuleFigure() {
   const B = baseline.value;
   const range = { min: 3, max: 70 };
-  const at = Array.from({ length: 68 }, (_, i) => 3 + i);
+  const baselines = Array.from({ length: 68 }, (_, i) => 3 + i);
+  const curve = (sigmaOf: (b: number) => number) =>
+    baselines.map((b): Vec2 => [b, sigmaOf(b)]).filter(([, value]) => value < most);
   const most = 0.35;
   return (
     <>
@@ -185,48 +172,30 @@ function RuleFigure() {
         yTitle="σ of the height, m"
         label="Standard deviation of the height against the baseline"
       >
-        {(toX, toY, frame) => (
+        {({ at, under, upright }) => (
           <>
-            <Curve
-              points={at.filter((b) => ruleOf(b) < most).map((b): Vec2 => [toX(b), toY(ruleOf(b))])}
-              class="s5 dashed"
-            />
-            <Curve
-              points={at.filter((b) => sigmaZ(b) < most).map((b): Vec2 => [toX(b), toY(sigmaZ(b))])}
-              class="s7"
-            />
-            <Line from={[toX(B), frame.top]} to={[toX(B), frame.height - frame.bottom]} class="s5 faint" />
+            <Curve points={curve(ruleOf).map(at)} class="s5 dashed" />
+            <Curve points={curve(sigmaZ).map(at)} class="s7" />
+            <Line {...upright(B)} class="s5 faint" />
             <Handle
-              at={[toX(B), Math.max(frame.top, toY(sigmaZ(B)))]}
+              at={at([B, Math.min(most, sigmaZ(B))])}
               class="s7"
               label="Baseline"
               says={metres(B, 0)}
-              value={B}
               step={6}
-              onMove={([px]) => {
-                const inner = (px - frame.left) / (frame.width - frame.left - frame.right);
-                baseline.value = Math.round(clamp(range.min + inner * (range.max - range.min), 3, 70));
-              }}
+              of={baseline}
+              to={(place) => Math.round(clamp(under(place), 3, 70))}
             />
-            <Label at={[toX(70), toY(0.3)]} anchor="end" class="s5">
+            <Label at={at([70, 0.3])} anchor="end" class="s5">
               - - rule
             </Label>
-            <Label at={[toX(70), toY(0.255)]} anchor="end" class="s7">
+            <Label at={at([70, 0.255])} anchor="end" class="s7">
               — computed
             </Label>
           </>
         )}
       </Plot>
-      <Slider
-        symbol="B"
-        label="baseline"
-        value={B}
-        range={[3, 70, 1]}
-        says={metres(B, 0)}
-        onInput={(value) => {
-          baseline.value = value;
-        }}
-      />
+      <Slider symbol="B" label="baseline" of={baseline} range={[3, 70, 1]} says={metres(B, 0)} />
     </>
   );
 }

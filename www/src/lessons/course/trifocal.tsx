@@ -1,19 +1,20 @@
 /** Lesson 4: two views never contradict each other about a line; the third one can. */
 import { signal } from "@preact/signals";
 import { Choice } from "../../app/parts/Choice";
-import { clipLine, DEGREE, lineDistance, lineThrough } from "../../shared/linear";
-import type { Vec2, Vec3 } from "../../shared/records";
+import { clamp, DEGREE, lineDistance, lineThrough, replaced } from "../../shared/linear";
+import type { Vec3 } from "../../shared/records";
 import { Dot, Handle, Label, Line, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { degrees, metres, pixels, place } from "../parts/say";
-import { ImagePane, PlaneOfLine, Space, seen } from "../parts/scene";
+import { ImageLine, ImagePane, PlaneOfLine, Space, seen } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
-import { type Camera, imageOf, projection } from "../toy/camera";
-import { normal, stream } from "../toy/evidence";
+import { type Camera, projection } from "../toy/camera";
+import { noisy, stream } from "../toy/evidence";
 import { ACROSS, aerial, CORNERS } from "../toy/house";
 import {
   type Ends2,
   type Ends3,
+  inView,
   lineOfTwo,
   partBetween,
   predicted,
@@ -23,7 +24,6 @@ import {
 
 const [FIRST, SECOND, THIRD] = ACROSS;
 const RIDGE: Ends3 = [CORNERS.ridgeWest, CORNERS.ridgeEast];
-const inView = (camera: Camera, [p, q]: Ends3): Ends2 => [imageOf(camera, p), imageOf(camera, q)];
 const IN_FIRST = inView(FIRST, RIDGE);
 /** By how much the line of the second view is moved down, pixels, at its two ends. */
 const moved = signal<readonly [number, number]>([0, 0]);
@@ -46,10 +46,8 @@ function MovedLine({ end }: { end: 0 | 1 }) {
       says={`moved by ${pixels(moved.value[end], 0)}`}
       value={moved.value[end]}
       step={1}
-      onMove={([, y]) => {
-        const by = Math.max(-28, Math.min(28, moved.value[end] + y - at[1]));
-        moved.value = end === 0 ? [by, moved.value[1]] : [moved.value[0], by];
-      }}
+      of={moved}
+      to={([, y]) => replaced(moved.value, end, clamp(moved.value[end] + y - at[1], -28, 28))}
     />
   );
 }
@@ -58,13 +56,7 @@ function TwoPlanesFigure({ isRevealed }: { isRevealed: boolean }) {
   const L = spaceLine();
   return (
     <div class="pair">
-      <Space
-        label="The planes of two image lines"
-        cameras={[
-          { name: "C", camera: FIRST, colour: 1 },
-          { name: "C′", camera: SECOND, colour: 2 },
-        ]}
-      >
+      <Space label="The planes of two image lines" cameras={[FIRST, SECOND]}>
         <PlaneOfLine camera={FIRST} ends={IN_FIRST} class="s1 area" down={4} />
         <PlaneOfLine camera={SECOND} ends={inSecond()} class="s2 area" down={4} />
         <Line from={seen(L[0])} to={seen(L[1])} class="s4 thick" />
@@ -72,7 +64,7 @@ function TwoPlanesFigure({ isRevealed }: { isRevealed: boolean }) {
           L
         </Label>
       </Space>
-      <ImagePane camera={SECOND} title="The line l′ of the second view" label="Second view" colour={2}>
+      <ImagePane camera={SECOND} title="The line l′ of the second view" colour={2}>
         <Line from={inSecond()[0]} to={inSecond()[1]} class="s2 thick" />
         {isRevealed && <MovedLine end={0} />}
         {isRevealed && <MovedLine end={1} />}
@@ -95,17 +87,16 @@ const WIRE: Ends3 = [
 function PredictFigure({ isRevealed }: { isRevealed: boolean }) {
   const [a, b] = [inView(FIRST, WIRE), inView(SECOND, WIRE)];
   const line = predicted([FIRST, SECOND], [a, b], THIRD);
-  const part = clipLine(line, THIRD.width, THIRD.height);
   return (
     <div class="pair three">
-      <ImagePane camera={FIRST} title="First view" label="First view" colour={1}>
+      <ImagePane camera={FIRST} colour={1}>
         <Line from={a[0]} to={a[1]} class="s1" />
       </ImagePane>
-      <ImagePane camera={SECOND} title="Second view" label="Second view" colour={2}>
+      <ImagePane camera={SECOND} colour={2}>
         <Line from={b[0]} to={b[1]} class="s2" />
       </ImagePane>
-      <ImagePane camera={THIRD} title="Third view" label="Third view" colour={3}>
-        {isRevealed && part !== null && <Line from={part[0]} to={part[1]} class="s3" />}
+      <ImagePane camera={THIRD} colour={3}>
+        {isRevealed && <ImageLine of={line} camera={THIRD} class="s3" />}
         <Line from={guess.value[0]} to={guess.value[1]} class="s6 dashed" />
         {([0, 1] as const).map((end) => (
           <Handle
@@ -114,9 +105,8 @@ function PredictFigure({ isRevealed }: { isRevealed: boolean }) {
             class="s6"
             label={`${end === 0 ? "One" : "Other"} end of your line`}
             says={place(guess.value[end], 0)}
-            onMove={(to) => {
-              guess.value = end === 0 ? [to, guess.value[1]] : [guess.value[0], to];
-            }}
+            of={guess}
+            to={(place) => replaced(guess.value, end, place)}
           />
         ))}
       </ImagePane>
@@ -133,16 +123,15 @@ const T = trifocal(projection(THIRD), projection(FIRST), projection(SECOND));
 const transferred = () => transferredLine(T, lineThrough(...IN_FIRST), lineThrough(...inSecond()));
 
 function TensorFigure() {
-  const part = clipLine(transferred(), THIRD.width, THIRD.height);
   return (
     <div class="pair">
-      <ImagePane camera={SECOND} title="Second view" label="Second view" colour={2}>
+      <ImagePane camera={SECOND} colour={2}>
         <Line from={inSecond()[0]} to={inSecond()[1]} class="s2 thick" />
         <MovedLine end={0} />
         <MovedLine end={1} />
       </ImagePane>
-      <ImagePane camera={THIRD} title="Third view: what both predict" label="Third view" colour={3}>
-        {part !== null && <Line from={part[0]} to={part[1]} class="s3 thick" />}
+      <ImagePane camera={THIRD} title="Third view: what both predict" colour={3}>
+        <ImageLine of={transferred()} camera={THIRD} class="s3 thick" />
       </ImagePane>
     </div>
   );
@@ -164,7 +153,6 @@ const decoyHeight = (of: Decoy) =>
   );
 
 function DecoyFigure({ isRevealed }: { isRevealed: boolean }) {
-  const part = clipLine(decoyLine(decoy.value), THIRD.width, THIRD.height);
   return (
     <>
       {isRevealed && (
@@ -179,10 +167,10 @@ function DecoyFigure({ isRevealed }: { isRevealed: boolean }) {
         />
       )}
       <div class="pair three">
-        <ImagePane camera={FIRST} title="First view: the line l" label="First view" colour={1}>
+        <ImagePane camera={FIRST} title="First view: the line l" colour={1}>
           <Line from={IN_FIRST[0]} to={IN_FIRST[1]} class="s1 thick" />
         </ImagePane>
-        <ImagePane camera={SECOND} title="Second view: three candidates" label="Second view" colour={2}>
+        <ImagePane camera={SECOND} title="Second view: three candidates" colour={2}>
           {(Object.keys(DECOYS) as Decoy[]).map((name) => {
             const [p, q] = inView(SECOND, DECOYS[name]);
             const isShown = !isRevealed || name === decoy.value;
@@ -196,8 +184,8 @@ function DecoyFigure({ isRevealed }: { isRevealed: boolean }) {
             );
           })}
         </ImagePane>
-        <ImagePane camera={THIRD} title="Third view" label="Third view" colour={3}>
-          {isRevealed && part !== null && <Line from={part[0]} to={part[1]} class="s3" />}
+        <ImagePane camera={THIRD} colour={3}>
+          {isRevealed && <ImageLine of={decoyLine(decoy.value)} camera={THIRD} class="s3" />}
         </ImagePane>
       </div>
     </>
@@ -220,8 +208,8 @@ const edge = (): Ends3 => {
 /** The line as it is predicted in the third view, with noise in the two others. */
 function samples(): Vec3[] {
   const random = stream(11);
-  const noisy = ([x, y]: Vec2): Vec2 => [x + NOISE_PX * normal(random), y + NOISE_PX * normal(random)];
-  const seenIn = (camera: Camera): Ends2 => inView(camera, edge()).map(noisy) as unknown as Ends2;
+  const seenIn = (camera: Camera) =>
+    inView(camera, edge()).map((x) => noisy(x, NOISE_PX, random)) as unknown as Ends2;
   return Array.from({ length: SAMPLES }, () =>
     predicted([STRIPS[0], STRIPS[1]], [seenIn(STRIPS[0]), seenIn(STRIPS[1])], STRIPS[2]),
   );
@@ -236,18 +224,10 @@ function DegenerateFigure() {
   const [p, q] = inView(STRIPS[2], edge());
   return (
     <>
-      <ImagePane
-        camera={STRIPS[2]}
-        title="View from the next strip: 24 predictions"
-        label="Third view"
-        colour={3}
-      >
-        {samples().map((line, i) => {
-          const part = clipLine(line, STRIPS[2].width, STRIPS[2].height);
-          return part === null ? null : (
-            <Line key={i.toString()} from={part[0]} to={part[1]} class="s3 faint" />
-          );
-        })}
+      <ImagePane camera={STRIPS[2]} title="View from the next strip: 24 predictions" colour={3}>
+        {samples().map((line, i) => (
+          <ImageLine key={i.toString()} of={line} camera={STRIPS[2]} class="s3 faint" />
+        ))}
         <Line from={p} to={q} class="s4 thick" />
         <Dot at={p} class="s4" />
         <Dot at={q} class="s4" />
@@ -255,12 +235,10 @@ function DegenerateFigure() {
       <Slider
         symbol="phi"
         label="between edge and baseline"
-        value={azimuth.value / DEGREE}
+        of={azimuth}
+        unit={DEGREE}
         range={[1, 90, 1]}
         says={degrees(azimuth.value)}
-        onInput={(value) => {
-          azimuth.value = value * DEGREE;
-        }}
       />
     </>
   );

@@ -2,7 +2,7 @@
 import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useId, useRef } from "preact/hooks";
-import { axesOf, type Frame, pathOf, type Scale, ticks } from "../../app/parts/charts";
+import { axesOf, type Frame, pathOf, place, type Scale, ticks } from "../../app/parts/charts";
 import type { Vec2 } from "../../shared/records";
 import { Formula } from "./Formula";
 
@@ -95,49 +95,75 @@ export function Dot({ at, class: name }: { at: Vec2; class: string }) {
   return <circle class={`point ${name}`} cx={at[0]} cy={at[1]} r={4} />;
 }
 
-interface HandleProps {
+/** A rectangle between two opposite corners. */
+export function Bar({ from, to, class: name }: { from: Vec2; to: Vec2; class: string }) {
+  return (
+    <rect
+      class={`bar ${name}`}
+      x={Math.min(from[0], to[0])}
+      y={Math.min(from[1], to[1])}
+      width={Math.abs(to[0] - from[0])}
+      height={Math.abs(to[1] - from[1])}
+    />
+  );
+}
+
+interface HandleProps<T> {
   at: Vec2;
   /** What it moves. */
   label: string;
   /** Where it is, in words. */
   says: string;
-  /** One number of it, for those who hear it. */
+  /** One number of it, for those who hear it; otherwise that which it moves, or its first coordinate. */
   value?: number;
-  onMove: (to: Vec2) => void;
+  /** What it moves, and to what, where it is taken to a place of the drawing. */
+  of: Signal<T>;
+  to: (place: Vec2) => T;
   class?: string;
   /** How far a key moves it, in units of the drawing. */
   step?: number;
+  /** Only a dot as yet. */
+  isFixed?: boolean;
 }
 
 /** Something that is dragged: by pointer or finger, and with the arrow keys when it has the focus. */
-export function Handle({ at, label, says, value, onMove, class: name = "s6", step = 2 }: HandleProps) {
+export function Handle<T>(props: HandleProps<T>) {
+  const { at, label, says, of: moved, to, class: name = "s6", step = 2, isFixed = false } = props;
+  const own = moved.value;
+  const value = props.value ?? (typeof own === "number" ? own : at[0]);
+  const move = (place: Vec2) => {
+    moved.value = to(place);
+  };
   const placeOf = (event: PointerEvent): Vec2 => {
     const of = event.currentTarget as SVGGraphicsElement;
     const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(of.getScreenCTM()?.inverse());
     return [point.x, point.y];
   };
   const byKey = (event: KeyboardEvent) => {
-    const by: Readonly<Record<string, Vec2>> = {
+    const steps: Readonly<Record<string, Vec2>> = {
       ArrowLeft: [-step, 0],
       ArrowRight: [step, 0],
       ArrowUp: [0, -step],
       ArrowDown: [0, step],
     };
-    const move = by[event.key];
-    if (move !== undefined) {
+    const by = steps[event.key];
+    if (by !== undefined) {
       event.preventDefault();
       event.stopPropagation();
       const times = event.shiftKey ? 5 : 1;
-      onMove([at[0] + times * move[0], at[1] + times * move[1]]);
+      move([at[0] + times * by[0], at[1] + times * by[1]]);
     }
   };
+  if (isFixed) {
+    return <Dot at={at} class={name} />;
+  }
   return (
     <g
       class={`handle ${name}`}
       role="slider"
       tabindex={0}
       aria-label={label}
-      aria-valuenow={Math.round(100 * (value ?? at[0])) / 100}
+      aria-valuenow={Math.round(100 * value) / 100}
       aria-valuetext={says}
       onKeyDown={byKey}
       onPointerDown={(event) => {
@@ -147,7 +173,7 @@ export function Handle({ at, label, says, value, onMove, class: name = "s6", ste
       }}
       onPointerMove={(event) => {
         if (event.buttons === 1) {
-          onMove(placeOf(event));
+          move(placeOf(event));
         }
       }}
     >
@@ -164,10 +190,26 @@ type SliderProps = {
   range: readonly [min: number, max: number, step: number];
   /** The value in words, with its unit. */
   says: string;
-} & ({ of: Signal<number> } | { value: number; onInput: (value: number) => void });
+  disabled?: boolean;
+} & (
+  | {
+      of: Signal<number>;
+      /** In which it is moved, where that is not the signal's own. */
+      unit?: number;
+    }
+  | { value: number; onInput: (value: number) => void }
+);
 
-export function Slider({ symbol, label, range: [min, max, step], says, ...moved }: SliderProps) {
+export function Slider({
+  symbol,
+  label,
+  range: [min, max, step],
+  says,
+  disabled = false,
+  ...moved
+}: SliderProps) {
   const id = useId();
+  const unit = "of" in moved ? (moved.unit ?? 1) : 1;
   return (
     <div class="slider">
       <label for={id}>
@@ -182,12 +224,13 @@ export function Slider({ symbol, label, range: [min, max, step], says, ...moved 
         min={min}
         max={max}
         step={step}
-        value={"of" in moved ? moved.of.value : moved.value}
+        disabled={disabled}
+        value={"of" in moved ? moved.of.value / unit : moved.value}
         aria-valuetext={says}
         onInput={(event) => {
           const value = Number(event.currentTarget.value);
           if ("of" in moved) {
-            moved.of.value = value;
+            moved.of.value = value * unit;
           } else {
             moved.onInput(value);
           }
@@ -204,11 +247,18 @@ interface PlotProps {
   yTitle: string;
   label: string;
   height?: number;
-  children: (
-    toX: (value: number) => number,
-    toY: (value: number) => number,
-    frame: Frame,
-  ) => ComponentChildren;
+  children: (places: Places) => ComponentChildren;
+}
+
+/** Where values are in a plot. */
+interface Places {
+  at: (values: Vec2) => Vec2;
+  /** The value across under a place. */
+  under: (place: Vec2) => number;
+  /** Lines over the whole plot, at a value across and at one up. */
+  upright: (x: number) => { from: Vec2; to: Vec2 };
+  level: (y: number) => { from: Vec2; to: Vec2 };
+  frame: Frame;
 }
 
 const PLOT_WIDTH = 480;
@@ -217,11 +267,24 @@ const PLOT_WIDTH = 480;
 export function Plot({ x, y, xTitle, yTitle, label, height = 270, children }: PlotProps) {
   const frame: Frame = { width: PLOT_WIDTH, height, left: 46, right: 12, top: 24, bottom: 54 };
   const [toX, toY] = axesOf(frame, x, y);
+  const [right, bottom] = [frame.width - frame.right, frame.height - frame.bottom];
+  const upright: Places["upright"] = (value) => ({
+    from: [toX(value), frame.top],
+    to: [toX(value), bottom],
+  });
+  const level: Places["level"] = (value) => ({ from: [frame.left, toY(value)], to: [right, toY(value)] });
+  const places: Places = {
+    at: ([across, up]) => [toX(across), toY(up)],
+    under: ([px]) => place(px, { min: frame.left, max: right }, x.min, x.max),
+    upright,
+    level,
+    frame,
+  };
   return (
     <Drawing width={frame.width} height={frame.height} label={label} class="plot">
       {ticks(y, 4).map((value) => (
         <g key={`y${value}`}>
-          <line class="grid" x1={frame.left} x2={frame.width - frame.right} y1={toY(value)} y2={toY(value)} />
+          <Line {...level(value)} class="grid" />
           <Label at={[frame.left, toY(value)]} dx={-5} dy={4} anchor="end" class="tick">
             {tick(value)}
           </Label>
@@ -229,25 +292,19 @@ export function Plot({ x, y, xTitle, yTitle, label, height = 270, children }: Pl
       ))}
       {ticks(x, 5).map((value) => (
         <g key={`x${value}`}>
-          <line
-            class="grid"
-            x1={toX(value)}
-            x2={toX(value)}
-            y1={frame.top}
-            y2={frame.height - frame.bottom}
-          />
-          <Label at={[toX(value), frame.height - frame.bottom]} dy={15} anchor="middle" class="tick">
+          <Line {...upright(value)} class="grid" />
+          <Label at={[toX(value), bottom]} dy={15} anchor="middle" class="tick">
             {tick(value)}
           </Label>
         </g>
       ))}
-      <Label at={[frame.width - frame.right, frame.height - frame.bottom]} dy={33} anchor="end" class="tick">
+      <Label at={[right, bottom]} dy={33} anchor="end" class="tick">
         {xTitle}
       </Label>
       <Label at={[4, frame.top]} dy={-9} class="tick">
         {yTitle}
       </Label>
-      {children(toX, toY, frame)}
+      {children(places)}
     </Drawing>
   );
 }
@@ -282,5 +339,25 @@ export function Grey(props: {
   }, [values, width, height]);
   return (
     <canvas ref={canvas} class={`grey ${name}`} width={width} height={height} role="img" aria-label={label} />
+  );
+}
+
+/** A window of a view, what it is, and what is measured of it. */
+export function WindowCard(props: {
+  values: readonly number[];
+  /** Pixels in a row. */
+  size: number;
+  colour: 1 | 2;
+  title: string;
+  label?: string;
+  score?: string;
+}) {
+  const { values, size, colour, title, label = `Window ${title}`, score } = props;
+  return (
+    <div class={`window-card s${colour}`}>
+      <Grey values={values} width={size} height={values.length / size} label={label} />
+      <strong>{title}</strong>
+      {score !== undefined && <span class="numbers">{score}</span>}
+    </div>
   );
 }

@@ -1,6 +1,6 @@
 /** Drawings of the toy scene: the house in an image, and the house with its cameras from the side. */
 import type { ComponentChildren } from "preact";
-import { add, scaled } from "../../shared/linear";
+import { add, clipLine, rectangle, scaled } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
 import { atHeight, type Camera, imageOf, lookingAt } from "../toy/camera";
 import { type FaceName, facesIn } from "../toy/house";
@@ -16,7 +16,7 @@ const FACE_CLASS: Readonly<Record<FaceName, string>> = {
 };
 
 /** The faces that a camera sees. */
-export function House({ camera }: { camera: Camera }) {
+function House({ camera }: { camera: Camera }) {
   return (
     <>
       {facesIn(camera).map(({ face, outline }) => (
@@ -26,15 +26,19 @@ export function House({ camera }: { camera: Camera }) {
   );
 }
 
+const VIEW_NAMES = { 1: "First view", 2: "Second view", 3: "Third view" } as const;
+
 /** An image of the house, with what is drawn over it in its pixels. */
 export function ImagePane(props: {
   camera: Camera;
-  title: string;
-  label: string;
-  children?: ComponentChildren;
+  /** Of which view it is, in whose colour. */
   colour: 1 | 2 | 3;
+  /** Below it, and for those who do not see it; otherwise the view's name. */
+  title?: string;
+  label?: string;
+  children?: ComponentChildren;
 }) {
-  const { camera, title, label, children, colour } = props;
+  const { camera, colour, title = VIEW_NAMES[colour], label = VIEW_NAMES[colour], children } = props;
   return (
     <figure class={`pane s${colour}`}>
       <Drawing width={camera.width} height={camera.height} label={label} isImage>
@@ -65,6 +69,12 @@ function GroundGrid({ camera }: { camera: Camera }) {
   );
 }
 
+/** The part of a line (a, b, c) that lies in an image. */
+export function ImageLine({ of, camera, class: name }: { of: Vec3; camera: Camera; class: string }) {
+  const part = clipLine(of, camera.width, camera.height);
+  return part === null ? null : <Line from={part[0]} to={part[1]} class={name} />;
+}
+
 /** Where the drawings in space are seen from: from the south-west, above. */
 export const OBSERVER: Camera = {
   f: 640,
@@ -81,12 +91,8 @@ export const seen = (X: Vec3): Vec2 => imageOf(OBSERVER, X);
 /** Where the drawing begins if no cameras are above the house. */
 const LOW_TOP = 165;
 
-/** The scene in space. Children are drawn over it, at `seen(X)`. */
-export function Space(props: {
-  label: string;
-  cameras: readonly ShownCamera[];
-  children?: ComponentChildren;
-}) {
+/** The scene in space, with the cameras C and C′. Children are drawn over it, at `seen(X)`. */
+export function Space(props: { label: string; cameras: readonly Camera[]; children?: ComponentChildren }) {
   const { label, cameras, children } = props;
   const top = cameras.length === 0 ? LOW_TOP : 0;
   return (
@@ -100,22 +106,16 @@ export function Space(props: {
         ))}
       </g>
       <House camera={OBSERVER} />
-      {cameras.map((one) => (
-        <Frustum key={one.name} of={one} />
+      {cameras.map((camera, i) => (
+        <Frustum key={i.toString()} camera={camera} name={i === 0 ? "C" : "C′"} colour={i === 0 ? 1 : 2} />
       ))}
       {children}
     </Drawing>
   );
 }
 
-export interface ShownCamera {
-  name: string;
-  camera: Camera;
-  colour: 1 | 2 | 3;
-}
-
 /** How far before the centre the image is drawn, metres. */
-export const IMAGE_M = 7;
+const IMAGE_M = 7;
 
 /** A place in the image of a camera as it stands in space, before its centre. */
 export function inFrame(camera: Camera, [x, y]: Vec2): Vec3 {
@@ -131,16 +131,8 @@ export function inFrame(camera: Camera, [x, y]: Vec2): Vec3 {
 }
 
 /** A camera: its centre and its image before it, as a print holds it. */
-function Frustum({ of: { name, camera, colour } }: { of: ShownCamera }) {
-  const { width, height } = camera;
-  const corners = (
-    [
-      [0, 0],
-      [width, 0],
-      [width, height],
-      [0, height],
-    ] as const
-  ).map((x) => seen(inFrame(camera, x)));
+function Frustum({ camera, name, colour }: { camera: Camera; name: string; colour: 1 | 2 }) {
+  const corners = rectangle([0, 0], [camera.width, camera.height]).map((x) => seen(inFrame(camera, x)));
   const centre = seen(camera.C);
   return (
     <g class={`frustum s${colour}`}>

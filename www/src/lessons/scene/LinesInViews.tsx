@@ -4,35 +4,19 @@ import { apply3, clipLine, homogeneous } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import { Line } from "../parts/draw";
 import { fundamental } from "../toy/camera";
-import { Photo, Waiting } from "./Photo";
-import { SceneBar } from "./SceneBar";
-import { type LoadedScene, useScene } from "./useScene";
+import { OnScene, Photo } from "./Photo";
+import type { LoadedScene } from "./useScene";
 
 const MOST_OTHERS = 5;
 
-export function LinesInViews() {
-  const { root, state, loaded } = useScene();
-  const now = loaded.value;
-  return (
-    <div class="real" ref={root}>
-      <SceneBar />
-      {now === null ? <Waiting state={state.value} /> : <Lines scene={now} />}
-    </div>
-  );
-}
+export const LinesInViews = () => <OnScene>{(scene) => <Lines scene={scene} />}</OnScene>;
 
 function Lines({ scene }: { scene: LoadedScene }) {
   const [first, ...others] = scene.views as [LoadedScene["views"][number], ...LoadedScene["views"][number][]];
   const at = useSignal<Vec2>([0.5 * first.width, 0.5 * first.height]);
   return (
     <div class="pair">
-      <Photo
-        view={first}
-        at={at.value}
-        onMove={(to) => {
-          at.value = to;
-        }}
-      />
+      <Photo view={first} at={at} />
       <div class="parts wide">
         {others.slice(0, MOST_OTHERS).map((view) => {
           const line = apply3(fundamental(first.P, view.P), homogeneous(at.value));

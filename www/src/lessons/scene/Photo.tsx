@@ -1,11 +1,14 @@
 /** Photographs with marks in their own pixels: whole, to point at, or a part of them, enlarged. */
+import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
+import type { SceneState } from "../../element/sharedScene";
 import { clamp } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import { Drawing, Handle } from "../parts/draw";
 import { place } from "../parts/say";
-import type { LoadedView } from "./useScene";
+import { SceneBar } from "./SceneBar";
+import { type LoadedScene, type LoadedView, useScene } from "./useScene";
 
 /** More pixels than a screen shows are not drawn. */
 const MOST_SHOWN = 1200;
@@ -16,12 +19,11 @@ interface PhotoProps {
   /** The part that is shown; without it the whole photograph. */
   part?: { centre: Vec2; size: number };
   /** Where the mark is that the reader moves. */
-  at?: Vec2;
-  onMove?: (to: Vec2) => void;
+  at?: Signal<Vec2>;
   children?: ComponentChildren;
 }
 
-export function Photo({ view, title, part, at, onMove, children }: PhotoProps) {
+export function Photo({ view, title, part, at, children }: PhotoProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const { image, width, height, name } = view;
   const [x0, y0, w, h] =
@@ -45,14 +47,15 @@ export function Photo({ view, title, part, at, onMove, children }: PhotoProps) {
         <Drawing width={w} height={h} label={`Marks on ${name}`} isImage>
           <g transform={`translate(${-x0} ${-y0})`}>
             {children}
-            {at !== undefined && onMove !== undefined && (
+            {at !== undefined && (
               <Handle
-                at={at}
+                at={at.value}
+                of={at}
                 class="s1 on-photo"
                 label={`Point in ${name}`}
-                says={`${place(at, 0)} pixels`}
+                says={`${place(at.value, 0)} pixels`}
                 step={Math.max(1, w / 200)}
-                onMove={([x, y]) => onMove([clamp(x, 0, width), clamp(y, 0, height)])}
+                to={([x, y]): Vec2 => [clamp(x, 0, width), clamp(y, 0, height)]}
               />
             )}
           </g>
@@ -63,12 +66,20 @@ export function Photo({ view, title, part, at, onMove, children }: PhotoProps) {
   );
 }
 
+/** The chosen scene, once it is loaded, below the line that chooses it. */
+export function OnScene({ children }: { children: (scene: LoadedScene) => ComponentChildren }) {
+  const { root, state, loaded } = useScene();
+  const now = loaded.value;
+  return (
+    <div class="real" ref={root}>
+      <SceneBar />
+      {now === null ? <Waiting state={state.value} /> : children(now)}
+    </div>
+  );
+}
+
 /** What is going on while there is nothing to show yet. */
-export function Waiting({
-  state,
-}: {
-  state: { progress: { words: string } | null; failure: string | null } | null;
-}) {
+function Waiting({ state }: { state: SceneState | null }) {
   return state?.failure != null ? (
     <p class="failure" role="alert">
       {state.failure}

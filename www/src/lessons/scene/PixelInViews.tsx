@@ -6,34 +6,20 @@ import { metres } from "../parts/say";
 import { pointAtHeight } from "../toy/camera";
 import { covarianceOf } from "../toy/triangulation";
 import { heightsOf, transferred } from "./heights";
-import { Photo, Waiting } from "./Photo";
-import { SceneBar } from "./SceneBar";
-import { type LoadedScene, useScene } from "./useScene";
+import { OnScene, Photo } from "./Photo";
+import type { LoadedScene } from "./useScene";
 
 /** Standard deviation that a mark set by hand is taken to have, pixels. */
 const SIGMA_PX = 0.5;
 const PART_PX = 90;
 const MOST_VIEWS = 8;
 
-export function PixelInViews() {
-  return <Pixels hasAccuracy={false} />;
-}
+export const PixelInViews = () => (
+  <OnScene>{(scene) => <Marked scene={scene} hasAccuracy={false} />}</OnScene>
+);
 
 /** The same with the standard deviation of the height: of two views, and of all. */
-export function PixelAccuracy() {
-  return <Pixels hasAccuracy />;
-}
-
-function Pixels({ hasAccuracy }: { hasAccuracy: boolean }) {
-  const { root, state, loaded } = useScene();
-  const now = loaded.value;
-  return (
-    <div class="real" ref={root}>
-      <SceneBar />
-      {now === null ? <Waiting state={state.value} /> : <Marked scene={now} hasAccuracy={hasAccuracy} />}
-    </div>
-  );
-}
+export const PixelAccuracy = () => <OnScene>{(scene) => <Marked scene={scene} hasAccuracy />}</OnScene>;
 
 function Marked({ scene, hasAccuracy }: { scene: LoadedScene; hasAccuracy: boolean }) {
   const views = scene.views.slice(0, MOST_VIEWS);
@@ -46,13 +32,7 @@ function Marked({ scene, hasAccuracy }: { scene: LoadedScene; hasAccuracy: boole
   return (
     <>
       <div class="pair">
-        <Photo
-          view={first}
-          at={x}
-          onMove={(to) => {
-            at.value = to;
-          }}
-        />
+        <Photo view={first} at={at} />
         <div class="parts">
           {views.map((view, i) => {
             const centre = i === 0 ? x : (images[i - 1] as Vec2);

@@ -1,4 +1,5 @@
 /** Evidence in nats: logarithms of likelihood ratios, which add where observations are independent. */
+import type { Vec2 } from "../../shared/records";
 
 export interface Beta {
   a: number;
@@ -56,6 +57,12 @@ export function stream(seed: number): () => number {
 export function normal(random: () => number): number {
   return Math.sqrt(-2 * Math.log(1 - random())) * Math.cos(2 * Math.PI * random());
 }
+
+/** A place with so much noise in both directions. */
+export const noisy = ([x, y]: Vec2, sigma: number, random: () => number): Vec2 => [
+  x + sigma * normal(random),
+  y + sigma * normal(random),
+];
 
 /**
  * What was stated and what was true, by tenths of the stated probability; tenths without enough candidates are left out.

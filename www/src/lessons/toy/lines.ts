@@ -16,6 +16,9 @@ import { type Camera, imageOf, meetOfPlanes, planeOfLine, projection } from "./c
 export type Ends2 = readonly [Vec2, Vec2];
 export type Ends3 = readonly [Vec3, Vec3];
 
+/** Where a line in space is seen. */
+export const inView = (camera: Camera, [p, q]: Ends3): Ends2 => [imageOf(camera, p), imageOf(camera, q)];
+
 /** The line in space of a line in each of two views; `sine` of the angle of their planes says how well. */
 export function lineOfTwo(cameras: readonly [Camera, Camera], lines: readonly [Ends2, Ends2]) {
   const [one, other] = cameras.map((camera, i) =>

@@ -1,4 +1,5 @@
 /** Roofs over a rectangular plan: each eave carries a half-plane, and the lowest one is the roof. */
+import { rectangle } from "../../shared/linear";
 
 /** Half of the plan's length and width, metres, and the height of its eaves. */
 export const PLAN = { length: 7, width: 4, eave: 5 } as const;
@@ -22,15 +23,10 @@ export function heightOf(side: SideName, slope: number, x: number, y: number): n
 export type Corner = readonly [x: number, y: number];
 
 /** The part of the plan that a half-plane covers: where none of the others is lower. */
-export function facetOf(slopes: Slopes, side: SideName): Corner[] {
+export function facetOf(slopes: Slopes, side: SideName): readonly Corner[] {
   const { length, width } = PLAN;
   const own = slopes[side];
-  let ring: Corner[] = [
-    [-length, -width],
-    [length, -width],
-    [length, width],
-    [-length, width],
-  ];
+  let ring: readonly Corner[] = rectangle([-length, -width], [length, width]);
   if (own === null) {
     return [];
   }

@@ -5,6 +5,7 @@ import { counted } from "../../app/parts/counted";
 import { FOOTPRINT_WORDS } from "../../app/parts/knownText";
 import { facetRejectionWords } from "../../app/parts/reasonText";
 import { Filmstrip } from "../../app/view/images/Filmstrip";
+import { rectangle } from "../../shared/linear";
 import type { Facet, FacetTrace, GroupingTrace, Vec2 } from "../../shared/records";
 import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
 import { roofTintHex } from "../../viewer/scene/roofTint";
@@ -118,21 +119,14 @@ function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
           d={closedPathOf(outline.map(at))}
         />
       ))}
-      {footprints.map(({ name, verdict, bounds_m: [[west, south], [east, north]] }, i) => (
+      {footprints.map(({ name, verdict, bounds_m }, i) => (
         <PlanArea
           key={i}
           figure={figure}
           picks={{ kind: "footprint", index: i }}
           name={`Footprint ${name}: ${FOOTPRINT_WORDS[verdict]}`}
           className={`plan-footprint ${verdict}`}
-          d={closedPathOf(
-            [
-              [west, south],
-              [east, south],
-              [east, north],
-              [west, north],
-            ].map(at),
-          )}
+          d={closedPathOf(rectangle(...bounds_m).map(at))}
         />
       ))}
       {BORDER_KINDS.map((kind) => {
