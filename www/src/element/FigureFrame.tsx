@@ -1,5 +1,6 @@
 /** What stands around a figure: how far it is, what went wrong, its title and paper, and what can be taken along. */
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useRef } from "preact/hooks";
+import { useSize } from "../app/parts/useDrawn";
 import { TakeAlong } from "../app/results/takeAlong/TakeAlong";
 import { AboutFigure } from "../app/view/figures/AboutFigure";
 import type { FigureStore } from "./figureStore";
@@ -69,19 +70,6 @@ export function FigureFrame({ seen }: { seen: Seen }) {
 
 /** How much room there is, by the names that the style sheets know. */
 function useLayout() {
-  const root = useRef<HTMLElement>(null);
-  const [layout, setLayout] = useState("wide");
-  useEffect(() => {
-    const element = root.current;
-    if (element === null) {
-      return undefined;
-    }
-    const observer = new ResizeObserver(() => {
-      const { clientWidth } = element;
-      setLayout(clientWidth < PHONE_PX ? "phone" : clientWidth < TIGHT_PX ? "tight" : "wide");
-    });
-    observer.observe(element);
-    return () => observer.disconnect();
-  }, []);
-  return [layout, root] as const;
+  const [root, { width }] = useSize<HTMLElement>();
+  return [width === 0 || width >= TIGHT_PX ? "wide" : width < PHONE_PX ? "phone" : "tight", root] as const;
 }

@@ -149,6 +149,12 @@ export function isInside([x = 0, y = 0]: Vector, ring: Mat): boolean {
   }, false);
 }
 
+/** The least and largest coordinates of places. */
+export function boundsOf(places: Mat): [x0: number, y0: number, x1: number, y1: number] {
+  const [xs, ys] = [places.map(([x = 0]) => x), places.map(([, y = 0]) => y)];
+  return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+}
+
 /** In plan; positive where the ring runs counter-clockwise. */
 export function planArea(ring: Mat): number {
   return edgesOf(ring).reduce(

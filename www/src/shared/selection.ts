@@ -72,6 +72,11 @@ export type IndexedKind = {
   [K in KindName]: FieldsOf<Texts[K]> extends "index" ? K : never;
 }[KindName];
 
+/** The index of what is selected, where it is of this kind; -1 where it is not. */
+export function pickedIndex(selection: Selection | null, kind: IndexedKind): number {
+  return selection?.kind === kind ? (selection as Picked<IndexedKind>).index : -1;
+}
+
 /** Where the 3D view's camera stands and what it looks at: x, y, z each, metres, local frame. */
 export type Standpoint = readonly [number, number, number, number, number, number];
 

@@ -1,5 +1,6 @@
-/** What the planes of dense matching are: building, ground or vegetation. */
-import type { DensePlane, DensePlanes, SurfaceClass } from "./records";
+/** Heights, slopes and areas of planes, and what those of dense matching are: building, ground or vegetation. */
+import { planArea } from "./linear";
+import type { DensePlane, DensePlanes, Facet, SurfaceClass } from "./records";
 
 export const CLASSES = ["building", "ground", "vegetation"] as const;
 export type ClassName = (typeof CLASSES)[number];
@@ -38,4 +39,10 @@ export function slopeSigma(plane: Pick<DensePlane, "plane" | "covariance">): num
   const [, [, xx, xy], [, , yy]] = plane.covariance;
   const along = rise === 0 ? Math.max(xx, yy) : (gx * gx * xx + 2 * gx * gy * xy + gy * gy * yy) / rise ** 2;
   return Math.sqrt(along) / (1 + rise ** 2);
+}
+
+/** Area along the slope, square metres: that of the plan over the cosine of the slope. */
+export function slopedArea({ outer, holes, plane }: Pick<Facet, "outer" | "holes" | "plane">): number {
+  const plan = Math.abs(planArea(outer)) - holes.reduce((sum, hole) => sum + Math.abs(planArea(hole)), 0);
+  return plan / Math.max(1e-6, Math.abs(plane.normal[2]));
 }

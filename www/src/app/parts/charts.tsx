@@ -1,9 +1,9 @@
 /** The charts of the figures: plain SVG, coloured by the style sheet, drawn from numbers that the core gave. */
-
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useRef } from "preact/hooks";
 import { textScale } from "../state/textScale";
 import { grouped } from "./numberText";
+import { useSize } from "./useDrawn";
 
 export interface Scale {
   min: number;
@@ -31,13 +31,13 @@ export function place(value: number, { min, max }: Scale, from: number, to: numb
   return from + ((value - min) / (max - min || 1)) * (to - from);
 }
 
-/** From values to the places of a chart, across and up. */
-export function axesOf(frame: Frame, x: Scale, y: Scale) {
-  const { width, height, left, right, top, bottom } = frame;
-  return [
-    (value: number) => place(value, x, left, width - right),
-    (value: number) => place(value, y, height - bottom, top),
-  ] as const;
+/** From values to the places of a chart, across and up, and to lines over all of it. */
+export function axesOf({ width, height, left, right, top, bottom }: Frame, x: Scale, y: Scale) {
+  const toX = (value: number) => place(value, x, left, width - right);
+  const toY = (value: number) => place(value, y, height - bottom, top);
+  const upright = (value: number) => ({ x1: toX(value), x2: toX(value), y1: top, y2: height - bottom });
+  const level = (value: number) => ({ x1: left, x2: width - right, y1: toY(value), y2: toY(value) });
+  return [toX, toY, upright, level] as const;
 }
 
 /** "M x y L x y ..."; what has no place, as a logarithm of nothing, is left out. */
@@ -81,26 +81,11 @@ export function ticks({ min, max }: Scale, count = 5): number[] {
 
 /** Gives what is drawn inside the size that there is, in units of the text's scale: so text has its own size, and grows as elsewhere. */
 export function Fit({ children }: { children: (frame: Frame) => ComponentChildren }) {
-  const box = useRef<HTMLDivElement>(null);
-  const [size, setSize] = useState<readonly [width: number, height: number] | null>(null);
+  const [box, { width, height }] = useSize<HTMLDivElement>();
   const scale = textScale.value;
-  useEffect(() => {
-    const element = box.current;
-    if (element === null) {
-      return undefined;
-    }
-    const observer = new ResizeObserver(() => {
-      const { clientWidth, clientHeight } = element;
-      if (clientWidth > 0 && clientHeight > 0) {
-        setSize([clientWidth, clientHeight]);
-      }
-    });
-    observer.observe(element);
-    return () => observer.disconnect();
-  }, []);
   return (
     <div class="fit" ref={box}>
-      {size !== null && children(frameOf(size[0] / scale, size[1] / scale))}
+      {width > 0 && children(frameOf(width / scale, height / scale))}
     </div>
   );
 }
@@ -128,7 +113,7 @@ interface ChartProps {
 export function Chart(props: ChartProps) {
   const { frame, x, y, xTitle, yTitle, label, children, onDrag, onClick } = props;
   const svg = useRef<SVGSVGElement>(null);
-  const [toX, toY] = axesOf(frame, x, y);
+  const [toX, toY, upright, level] = axesOf(frame, x, y);
   const valueAt = (event: PointerEvent): [number, number] => {
     const matrix = svg.current?.getScreenCTM()?.inverse();
     const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix ?? undefined);
@@ -162,7 +147,7 @@ export function Chart(props: ChartProps) {
     >
       {(props.yTicks ?? ticks(y, 4)).map((value) => (
         <g key={value}>
-          <line class="grid" x1={frame.left} x2={frame.width - frame.right} y1={toY(value)} y2={toY(value)} />
+          <line class="grid" {...level(value)} />
           <text class="tick" x={frame.left - 5} y={toY(value) + 4} text-anchor="end">
             {grouped(value)}
           </text>
@@ -170,13 +155,7 @@ export function Chart(props: ChartProps) {
       ))}
       {(props.xTicks ?? ticks(x, 6)).map((value) => (
         <g key={value}>
-          <line
-            class="grid"
-            y1={frame.top}
-            y2={frame.height - frame.bottom}
-            x1={toX(value)}
-            x2={toX(value)}
-          />
+          <line class="grid" {...upright(value)} />
           <text class="tick" x={toX(value)} y={frame.height - frame.bottom + 13} text-anchor="middle">
             {grouped(value)}
           </text>
@@ -191,6 +170,24 @@ export function Chart(props: ChartProps) {
       {children}
     </svg>
   );
+}
+
+/** What makes a shape of a picture a button, by pointer and key. */
+export function buttonShape(name: string, isPressed: boolean, press: () => void) {
+  return {
+    role: "button",
+    // In SVG the attribute has no capital.
+    tabindex: 0,
+    "aria-label": name,
+    "aria-pressed": isPressed,
+    onClick: press,
+    onKeyDown: (event: KeyboardEvent) => {
+      if (event.key === "Enter" || event.key === " ") {
+        event.preventDefault();
+        press();
+      }
+    },
+  } as const;
 }
 
 /** How many values fall into each of `count` bins between two ends. */

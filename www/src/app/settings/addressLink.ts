@@ -8,6 +8,7 @@ import type { ParamValue } from "../../shared/paramTree";
 import { formatSelection, parseSelection, type Selection, type Standpoint } from "../../shared/selection";
 import { methodNamed, tabsOf } from "../../stages/catalogue";
 import type { Tab } from "../../stages/list";
+import { degreesOf } from "../parts/numberText";
 import { isBusy } from "../state/activity";
 import { defaults, method, params } from "../state/parameters";
 import { isDemo } from "../state/project";
@@ -146,7 +147,7 @@ function presentLink(): Link {
     selection: selection.value,
     params: { ...changedParams(defaults.value, params.value), method: method.value },
     tourStep: tourStep.value,
-    thetaDeg: isTurned ? rounded((theta * 180) / Math.PI, 10) : null,
+    thetaDeg: isTurned ? rounded(degreesOf(theta), 10) : null,
     point: isMoved ? [candidate, rounded(at, 1000)] : null,
     camera: (camera.value?.map((metres) => rounded(metres, 100)) ?? null) as Standpoint | null,
   };

@@ -1,5 +1,5 @@
 /** In the figures of W96, and in plan: main directions, regions, faces. */
-import { DEGREE, isInside } from "../../shared/linear";
+import { boundsOf, DEGREE, isInside } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import { inUnit, kindOf, readQuantity } from "../judging/quantity";
@@ -95,11 +95,10 @@ export const ridgeDirection: FigureExercise = {
 
 /** Places on a grid over some rings. */
 function sampled(rings: readonly (readonly (readonly number[])[])[], step: number): Place[] {
-  const all = rings.flat();
-  const [xs, ys] = [all.map(([x = 0]) => x), all.map(([, y = 0]) => y)];
+  const [x0, y0, x1, y1] = boundsOf(rings.flat());
   const places: Place[] = [];
-  for (let y = Math.min(...ys) + step / 2; y < Math.max(...ys); y += step) {
-    for (let x = Math.min(...xs) + step / 2; x < Math.max(...xs); x += step) {
+  for (let y = y0 + step / 2; y < y1; y += step) {
+    for (let x = x0 + step / 2; x < x1; x += step) {
       if (rings.filter((ring) => isInside([x, y], ring)).length % 2 === 1) {
         places.push([x, y]);
       }
@@ -122,11 +121,11 @@ export function facesUnder(shown: Figure, view: number, index: number): Covered[
   if (info === undefined || region === undefined) {
     return [];
   }
-  const box = boxOf(region.rings.flat());
+  const box = boundsOf(region.rings.flat());
   const near = FACES.map((face) => ({
     face,
     ring: face.polygon.map((point) => imageIn(info, point)),
-  })).filter(({ ring }) => doMeet(box, boxOf(ring)));
+  })).filter(({ ring }) => doMeet(box, boundsOf(ring)));
   const own = near.length === 0 ? [] : sampled(region.rings, 2);
   return near
     .map(({ face, ring }) => {
@@ -138,12 +137,7 @@ export function facesUnder(shown: Figure, view: number, index: number): Covered[
     .sort((a, b) => b.ofRegion - a.ofRegion);
 }
 
-type Box = readonly [x0: number, y0: number, x1: number, y1: number];
-
-function boxOf(places: readonly (readonly number[])[]): Box {
-  const [xs, ys] = [places.map(([x = 0]) => x), places.map(([, y = 0]) => y)];
-  return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
-}
+type Box = ReturnType<typeof boundsOf>;
 
 const doMeet = (a: Box, b: Box) => a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3];
 

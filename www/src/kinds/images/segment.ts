@@ -6,7 +6,7 @@ import type { Vec2, Vec3, ViewInfo } from "../../shared/records";
 import { viewName } from "../../stages/figure";
 import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
-import { CHOSEN, endsIn, type Mark, SELECTED_PX, THIN_PX } from "../parts/marks";
+import { CHOSEN, diamond, endsIn, type Mark, SELECTED_PX, THIN_PX } from "../parts/marks";
 import { allOf, degreesText, links, type Row } from "../parts/rows";
 import { linesShape } from "../parts/shapes";
 
@@ -116,13 +116,7 @@ function epipolarMark([a, b, c]: Vec3, { width, height }: ViewInfo): Mark {
   return { points, colour: PALETTE.beam, width: 1.25, dashed: true, label: "F x", labelSide: "left" };
 }
 
-function point([x, y]: Vec2, label: string): Mark {
-  const r = 2.5;
-  const points: Vec2[] = [
-    [x - r, y],
-    [x, y - r],
-    [x + r, y],
-    [x, y + r],
-  ];
+function point(at: Vec2, label: string): Mark {
+  const points = diamond(at, 2.5);
   return { points, closed: true, colour: PALETTE.rejected, width: 2, fill: 0.5, label, labelSide: "left" };
 }

@@ -2,7 +2,6 @@
  * What things look like in an image: polylines in pixels. Things in space are projected with the view's own matrix, as the
  * viewer's graphics card does; everything else is drawn as the core gave it.
  */
-
 import { PALETTE } from "../../shared/palette";
 import type { Vec2, Vec3, ViewInfo } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
@@ -55,6 +54,14 @@ export function project({ projection: p }: Pick<ViewInfo, "projection">, [x, y, 
   const depth = at(2);
   return depth > 0 ? [at(0) / depth, at(1) / depth] : null;
 }
+
+/** A place, as a square that stands on its corner. */
+export const diamond = ([x, y]: Vec2, reach: number): Vec2[] => [
+  [x - reach, y],
+  [x, y - reach],
+  [x + reach, y],
+  [x, y + reach],
+];
 
 /** Shapes as a view sees them. */
 export function shapeMarks(

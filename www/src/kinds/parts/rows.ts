@@ -73,7 +73,7 @@ export const slopeText = (normal: Vec3) => degreesText(slopeOf(normal));
 
 /** Clockwise from north. */
 export function azimuthText(east: number, north: number): string {
-  return `${(((Math.atan2(east, north) * 180) / Math.PI + 360) % 360).toFixed(0)}° from north`;
+  return `${((degreesOf(Math.atan2(east, north)) + 360) % 360).toFixed(0)}° from north`;
 }
 
 /** A point of the local frame in the frame of the input. */

@@ -1,7 +1,7 @@
 /** A facet of the model (B99 4.3). */
-import { slopedArea } from "../../app/parts/facetArea";
 import { refinementWords } from "../../app/parts/reasonText";
 import { type Facet, isMadeFrom } from "../../shared/records";
+import { slopedArea } from "../../shared/surfaceClass";
 import type { Results } from "../../stages/list";
 import { probabilityRow } from "../parts/evidenceRows";
 import type { Kind } from "../parts/kind";

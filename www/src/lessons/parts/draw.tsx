@@ -1,8 +1,9 @@
 /** Parts of drawn figures: SVG whose type keeps its size, things that are dragged by pointer and key, sliders, plots. */
 import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
-import { useEffect, useId, useRef } from "preact/hooks";
+import { useId } from "preact/hooks";
 import { axesOf, type Frame, pathOf, place, type Scale, ticks } from "../../app/parts/charts";
+import { useDrawn, useSize } from "../../app/parts/useDrawn";
 import type { Vec2 } from "../../shared/records";
 import { Formula } from "./Formula";
 
@@ -29,26 +30,14 @@ export function Drawing({
   isImage = false,
   class: name = "",
 }: DrawingProps) {
-  const svg = useRef<SVGSVGElement>(null);
-  useEffect(() => {
-    const element = svg.current;
-    if (element === null) {
-      return undefined;
-    }
-    const observer = new ResizeObserver(() => {
-      if (element.clientWidth > 0) {
-        const shown = Math.min(element.clientWidth / width, element.clientHeight / height);
-        element.style.setProperty("--u", (1 / shown).toFixed(4));
-      }
-    });
-    observer.observe(element);
-    return () => observer.disconnect();
-  }, [width, height]);
+  const [svg, shown] = useSize<SVGSVGElement>();
+  const unit = Math.max(width / shown.width, height / shown.height);
   return (
     // biome-ignore lint/a11y/useSemanticElements: a drawing is no form
     <svg
       ref={svg}
       class={`drawing ${isImage ? "image" : ""} ${name}`}
+      style={Number.isFinite(unit) ? { "--u": unit.toFixed(4) } : undefined}
       viewBox={`0 ${top} ${width} ${height}`}
       role="group"
       aria-label={label}
@@ -325,18 +314,15 @@ export function Grey(props: {
   class?: string;
 }) {
   const { values, width, height, label, class: name = "" } = props;
-  const canvas = useRef<HTMLCanvasElement>(null);
-  useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (context != null) {
-      const image = context.createImageData(width, height);
-      for (let i = 0; i < width * height; i += 1) {
-        image.data.fill(values[i] ?? 0, 4 * i, 4 * i + 3);
-        image.data[4 * i + 3] = 255;
-      }
-      context.putImageData(image, 0, 0);
+  const draw = (context: CanvasRenderingContext2D) => {
+    const image = context.createImageData(width, height);
+    for (let i = 0; i < width * height; i += 1) {
+      image.data.fill(values[i] ?? 0, 4 * i, 4 * i + 3);
+      image.data[4 * i + 3] = 255;
     }
-  }, [values, width, height]);
+    context.putImageData(image, 0, 0);
+  };
+  const canvas = useDrawn(draw, [values, width, height]);
   return (
     <canvas ref={canvas} class={`grey ${name}`} width={width} height={height} role="img" aria-label={label} />
   );

@@ -1,7 +1,7 @@
 /** Photographs with marks in their own pixels: whole, to point at, or a part of them, enlarged. */
 import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useDrawn } from "../../app/parts/useDrawn";
 import type { SceneState } from "../../element/sharedScene";
 import { clamp } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
@@ -24,7 +24,6 @@ interface PhotoProps {
 }
 
 export function Photo({ view, title, part, at, children }: PhotoProps) {
-  const canvas = useRef<HTMLCanvasElement>(null);
   const { image, width, height, name } = view;
   const [x0, y0, w, h] =
     part === undefined
@@ -32,14 +31,12 @@ export function Photo({ view, title, part, at, children }: PhotoProps) {
       : [part.centre[0] - part.size / 2, part.centre[1] - part.size / 2, part.size, part.size];
   const shown = Math.min(1, MOST_SHOWN / w);
   const [columns, rows] = part === undefined ? [Math.round(w * shown), Math.round(h * shown)] : [240, 240];
-  useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (context != null) {
-      context.imageSmoothingEnabled = part === undefined;
-      context.clearRect(0, 0, columns, rows);
-      context.drawImage(image, x0, y0, w, h, 0, 0, columns, rows);
-    }
-  }, [image, x0, y0, w, h, columns, rows, part === undefined]);
+  const draw = (context: CanvasRenderingContext2D) => {
+    context.imageSmoothingEnabled = part === undefined;
+    context.clearRect(0, 0, columns, rows);
+    context.drawImage(image, x0, y0, w, h, 0, 0, columns, rows);
+  };
+  const canvas = useDrawn(draw, [image, x0, y0, w, h, columns, rows, part === undefined]);
   return (
     <figure class="photo">
       <div class="stack">

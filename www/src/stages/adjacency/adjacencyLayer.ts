@@ -6,9 +6,9 @@ import { Group } from "three";
 import { category, PALETTE } from "../../shared/palette";
 import { edgesOfCorner, isVerifiedPlane } from "../../shared/proposed";
 import type { AdjacencyGraphs, CornerPlane, SpaceCorner } from "../../shared/records";
-import type { Selection } from "../../shared/selection";
+import { pickedIndex, type Selection } from "../../shared/selection";
 import { zUpGroup } from "../../viewer/scene/frame";
-import { disposeObject, type Layer } from "../../viewer/scene/layer";
+import { disposeObject, fade, type Layer } from "../../viewer/scene/layer";
 import { SelectedObject } from "../../viewer/scene/selectedObject";
 import { sidesOf, strokes } from "../../viewer/scene/strokes";
 
@@ -41,7 +41,7 @@ export function buildAdjacency({ planes, trace }: AdjacencyGraphs): Layer {
     ),
     refused: strokes(rings(refused), PALETTE.unmatched, WIDTH_PX.refused),
   };
-  const corner = new Map<unknown, readonly number[]>([
+  const cornerOf = new Map<unknown, readonly number[]>([
     [parts.edges, edges.map(({ index }) => index)],
     [parts.polygon, sides(verified).map((one) => one.corner)],
     [parts.refused, sides(refused).map((one) => one.corner)],
@@ -51,18 +51,15 @@ export function buildAdjacency({ planes, trace }: AdjacencyGraphs): Layer {
   return {
     object,
     pick: (hit) => {
-      const index = corner.get(hit.object)?.[hit.faceIndex ?? -1];
+      const index = cornerOf.get(hit.object)?.[hit.faceIndex ?? -1];
       return index === undefined ? null : { kind: "corner", index };
     },
     highlight(selection: Selection | null) {
-      for (const name of Object.keys(parts) as (keyof typeof parts)[]) {
-        parts[name].material.opacity = OPACITY[name] * (selection === null ? 1 : DIMMED);
-      }
-      const picked = selection?.kind === "corner" ? corners[selection.index] : undefined;
-      const own = planes.filter(({ regions }) =>
-        regions.some(([index]) => selection?.kind === "corner" && index === selection.index),
-      );
-      chosen.show(picked === undefined ? null : chosenCorner(picked, corners, own));
+      fade(parts, OPACITY, selection === null ? 1 : DIMMED);
+      const picked = pickedIndex(selection, "corner");
+      const corner = corners[picked];
+      const own = planes.filter(({ regions }) => regions.some(([index]) => index === picked));
+      chosen.show(corner === undefined ? null : chosenCorner(corner, corners, own));
     },
     dispose: () => disposeObject(object),
   };
@@ -70,12 +67,8 @@ export function buildAdjacency({ planes, trace }: AdjacencyGraphs): Layer {
 
 /** A corner's edges and the planes that it proposes, over all else. */
 function chosenCorner(corner: SpaceCorner, corners: readonly SpaceCorner[], own: CornerPlane[]): Group {
-  const all = [
+  return new Group().add(
     strokes(sidesOf(own.map(({ polygon }) => polygon)), PALETTE.grown, WIDTH_PX.polygon),
     strokes(edgesOfCorner(corner, corners).flat(2), PALETTE.selected, WIDTH_PX.selected),
-  ];
-  for (const one of all) {
-    one.raycast = () => undefined;
-  }
-  return new Group().add(...all);
+  );
 }

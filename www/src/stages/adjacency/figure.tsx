@@ -29,11 +29,8 @@ export default {
     adjacency: {
       View: AdjacencyLab,
       // The corner with the most edges in the most views.
-      begin: ({ results: { adjacency } }) => {
-        const corners = adjacency?.trace.corners;
-        const index = highest(corners, ({ edges, images }) => edges.length * images.length);
-        return index < 0 ? null : { kind: "corner", index };
-      },
+      begin: ({ results: { adjacency } }) =>
+        highest("corner", adjacency?.trace.corners, ({ edges, images }) => edges.length * images.length),
     },
   },
 } satisfies StageFigure;

@@ -3,6 +3,7 @@ import { counted } from "../../app/parts/counted";
 import { results } from "../../app/state/results";
 import { selection } from "../../app/state/viewState";
 import { isVerifiedPlane } from "../../shared/proposed";
+import { pickedIndex } from "../../shared/selection";
 import type { Results } from "../list";
 import type { StageStep } from "../tourStep";
 
@@ -27,20 +28,10 @@ export default [
   },
 ] satisfies readonly StageStep[];
 
-function pickedCorner(): CornerParts | null {
-  const picked = selection.value;
-  return picked?.kind === "corner" ? cornerParts(results.value, picked.index) : null;
-}
+const pickedCorner = () => cornerParts(results.value, pickedIndex(selection.value, "corner"));
 
-interface CornerParts {
-  views: number;
-  edges: number;
-  /** Planes of its regions that the photographs verify. */
-  planes: number;
-}
-
-/** What a corner in space is; null where there is none. */
-export function cornerParts({ adjacency }: Pick<Results, "adjacency">, index: number): CornerParts | null {
+/** What a corner in space is, with the planes of its regions that the photographs verify; null where there is none. */
+export function cornerParts({ adjacency }: Pick<Results, "adjacency">, index: number) {
   const corner = adjacency?.trace.corners[index];
   const own = adjacency?.planes.filter(
     (plane) => isVerifiedPlane(plane) && plane.regions.some(([proposer]) => proposer === index),

@@ -2,6 +2,7 @@
 import { counted } from "../../app/parts/counted";
 import { results } from "../../app/state/results";
 import { selection, showView, tab } from "../../app/state/viewState";
+import { pickedIndex } from "../../shared/selection";
 import { ALL_VIEWS, type StageStep } from "../tourStep";
 
 export default [
@@ -21,6 +22,5 @@ export default [
 
 /** In how many views the picked line shows. */
 function pickedViews(): number {
-  const picked = selection.value;
-  return picked?.kind === "line" ? (results.value.records[picked.index]?.supports.length ?? 0) : 0;
+  return results.value.records[pickedIndex(selection.value, "line")]?.supports.length ?? 0;
 }

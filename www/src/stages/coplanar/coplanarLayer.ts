@@ -6,9 +6,9 @@ import { Group } from "three";
 import { category, PALETTE } from "../../shared/palette";
 import { isVerifiedSet } from "../../shared/proposed";
 import type { CoplanarSet, CoplanarSets } from "../../shared/records";
-import type { Selection } from "../../shared/selection";
+import { pickedIndex, type Selection } from "../../shared/selection";
 import { zUpGroup } from "../../viewer/scene/frame";
-import { disposeObject, type Layer } from "../../viewer/scene/layer";
+import { disposeObject, fade, type Layer } from "../../viewer/scene/layer";
 import { SelectedObject } from "../../viewer/scene/selectedObject";
 import { endsOf, sidesOf, strokes } from "../../viewer/scene/strokes";
 
@@ -47,10 +47,8 @@ export function buildCoplanar({ sets }: CoplanarSets, lines: Float64Array): Laye
       return index === undefined ? null : { kind: "coplanar", index };
     },
     highlight(selection: Selection | null) {
-      for (const name of Object.keys(parts) as (keyof typeof parts)[]) {
-        parts[name].material.opacity = OPACITY[name] * (selection === null ? 1 : DIMMED);
-      }
-      const set = selection?.kind === "coplanar" ? sets[selection.index] : undefined;
+      fade(parts, OPACITY, selection === null ? 1 : DIMMED);
+      const set = sets[pickedIndex(selection, "coplanar")];
       chosen.show(set === undefined ? null : chosenSet(set, lines));
     },
     dispose: () => disposeObject(object),
@@ -59,17 +57,10 @@ export function buildCoplanar({ sets }: CoplanarSets, lines: Float64Array): Laye
 
 /** A set's hull, its lines and its polygon, over all else. */
 function chosenSet(set: CoplanarSet, lines: Float64Array): Group {
-  const all = [
+  const ends = set.lines.flatMap((line) => endsOf(lines, line));
+  return new Group().add(
     strokes(sidesOf([set.hull]), PALETTE.grown, WIDTH_PX.line),
-    strokes(
-      set.lines.flatMap((line) => endsOf(lines, line)),
-      PALETTE.line,
-      WIDTH_PX.line,
-    ),
+    strokes(ends, PALETTE.line, WIDTH_PX.line),
     strokes(sidesOf([set.polygon]), PALETTE.selected, WIDTH_PX.selected),
-  ];
-  for (const one of all) {
-    one.raycast = () => undefined;
-  }
-  return new Group().add(...all);
+  );
 }

@@ -36,12 +36,10 @@ export default {
     "coplanar-sets": {
       View: CoplanarLab,
       // Of the sets that the photographs verify, that of which they say most for its outline.
-      begin: ({ results: { coplanar } }) => {
-        const index = highest(coplanar?.sets, (set) =>
+      begin: ({ results: { coplanar } }) =>
+        highest("coplanar", coplanar?.sets, (set) =>
           isVerifiedSet(set) ? Math.max(0, set.outline_nats) : 0,
-        );
-        return index < 0 ? null : { kind: "coplanar", index };
-      },
+        ),
     },
   },
 } satisfies StageFigure;

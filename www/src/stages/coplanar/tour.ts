@@ -3,6 +3,7 @@ import { counted } from "../../app/parts/counted";
 import { results } from "../../app/state/results";
 import { selection } from "../../app/state/viewState";
 import { coplanarSetsOf } from "../../shared/records";
+import { pickedIndex } from "../../shared/selection";
 import type { Results } from "../list";
 import type { StageStep } from "../tourStep";
 
@@ -34,31 +35,19 @@ export default [
   },
 ] satisfies readonly StageStep[];
 
-function pickedSet(): CoplanarSetParts | null {
-  const picked = selection.value;
-  return picked?.kind === "coplanar" ? coplanarSetParts(results.value, picked.index) : null;
-}
-
-interface CoplanarSetParts {
-  lines: number;
-  /** Sides without a line that were made square or mirrored. */
-  moved: number;
-  /** The facets that it proposed. */
-  facets: number[];
-}
+const pickedSet = () => coplanarSetParts(results.value, pickedIndex(selection.value, "coplanar"));
 
 /** What a set of coplanar lines is; null where there is none. */
-export function coplanarSetParts(
-  { coplanar, facets }: Pick<Results, "coplanar" | "facets">,
-  index: number,
-): CoplanarSetParts | null {
+export function coplanarSetParts({ coplanar, facets }: Pick<Results, "coplanar" | "facets">, index: number) {
   const [set, trace] = [coplanar?.sets[index], coplanar?.trace.sets[index]];
   if (set === undefined || trace === undefined) {
     return null;
   }
   return {
     lines: set.lines.length,
+    /** Sides without a line that were made square or mirrored. */
     moved: trace.closing.length,
+    /** The facets that it proposed. */
     facets: (facets ?? []).flatMap((facet, i) => (coplanarSetsOf(facet).includes(index) ? [i] : [])),
   };
 }

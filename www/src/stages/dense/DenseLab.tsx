@@ -1,4 +1,5 @@
 /** B99 2: the patches of dense matching in plan, by what their planes are, or by how probably they are buildings. */
+import { pickedIndex } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { useState } from "preact/hooks";
 import { Choice } from "../../app/parts/Choice";
@@ -43,7 +44,6 @@ function Plan({ frame, figure, dense, shows }: PlanProps) {
   const { patches, spacing_m } = dense.trace;
   const places = patches.map(({ middle }) => middle);
   const buildings = dense.planes.filter((plane) => plane.class.building > 0.5).length;
-  const picked = figure.selection;
   return (
     <PlanChart
       frame={frame}
@@ -56,7 +56,7 @@ function Plan({ frame, figure, dense, shows }: PlanProps) {
         const index = planeAt(dense, at);
         return index === null ? null : { kind: "dense", index };
       }}
-      picked={picked?.kind === "dense" ? dense.planes[picked.index]?.ring : undefined}
+      picked={dense.planes[pickedIndex(figure.selection, "dense")]?.ring}
     >
       {({ at }) =>
         areasOf(dense, shows).map(({ name, opacity, own }) => (

@@ -2,14 +2,15 @@
  * Patches of dense matching (B99 2) as squares that lie in their planes, in the colour of what the plane is; patches in no
  * plane are small and grey, where matching put them.
  */
-import { BufferAttribute, BufferGeometry, Group, Mesh, MeshBasicMaterial } from "three";
+import { type BufferGeometry, Group, type Mesh, type MeshBasicMaterial } from "three";
+import { rectangle } from "../../shared/linear";
 import { CLASS_COLOURS, PALETTE } from "../../shared/palette";
 import type { DensePlane, DensePlanes, Patch } from "../../shared/records";
-import type { Selection } from "../../shared/selection";
+import { pickedIndex, type Selection } from "../../shared/selection";
 import { gradientOf, heightAt, likeliestClass, planesOfPatches } from "../../shared/surfaceClass";
 import { opacityOf } from "../../viewer/scene/certainty";
 import { zUpGroup } from "../../viewer/scene/frame";
-import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../../viewer/scene/layer";
+import { colouredMesh, disposeObject, type Layer, quads, rgb } from "../../viewer/scene/layer";
 import { SelectedObject } from "../../viewer/scene/selectedObject";
 import { strokes } from "../../viewer/scene/strokes";
 
@@ -50,7 +51,7 @@ export function buildDense(dense: DensePlanes): Layer {
     highlight(selection: Selection | null) {
       all.material.opacity = selection === null ? OPACITY.all : OPACITY.dimmed;
       others.material.opacity = selection === null ? OPACITY.free : OPACITY.dimmed;
-      const plane = selection?.kind === "dense" ? dense.planes[selection.index] : undefined;
+      const plane = dense.planes[pickedIndex(selection, "dense")];
       chosen.show(plane === undefined ? null : chosenPlane(plane, plane.patches.map(squareOf), dense));
     },
     dispose: () => disposeObject(object),
@@ -65,9 +66,6 @@ function chosenPlane(plane: DensePlane, own: readonly Square[], { trace }: Dense
     return [...middle, heightAt(plane, ...middle), ...middle, z];
   });
   const stems = strokes(ends, PALETTE.selected, STEM_PX);
-  for (const part of [bright, stems]) {
-    part.raycast = () => undefined;
-  }
   return new Group().add(bright, stems);
 }
 
@@ -86,34 +84,16 @@ function freeSquare({ middle, z, gradient }: Patch): Square {
   return { at: [...middle, z], gradient, colour: GREY };
 }
 
-/** The corners of a square in plan, in halves of its side, counter-clockwise. */
-const CORNERS = [
-  [-1, -1],
-  [1, -1],
-  [1, 1],
-  [-1, 1],
-] as const;
-
 /** All in one geometry: two triangles each, in their order. */
 export function squares(all: readonly Square[], side: number): Mesh<BufferGeometry, MeshBasicMaterial> {
+  const offsets = rectangle([-side / 2, -side / 2], [side / 2, side / 2]);
   const positions = new Float32Array(12 * all.length);
   const colours = new Float32Array(16 * all.length);
-  const corners = new Uint32Array(6 * all.length);
   all.forEach(({ at: [x, y, z], gradient: [gx, gy], colour }, i) => {
-    CORNERS.forEach(([across, along], k) => {
-      const [dx, dy] = [(across * side) / 2, (along * side) / 2];
+    offsets.forEach(([dx, dy], k) => {
       positions.set([x + dx, y + dy, z + gx * dx + gy * dy], 12 * i + 3 * k);
       colours.set(colour, 16 * i + 4 * k);
     });
-    corners.set(
-      [0, 1, 2, 0, 2, 3].map((k) => 4 * i + k),
-      6 * i,
-    );
   });
-  const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(positions, 3));
-  geometry.setAttribute("color", new BufferAttribute(colours, 4));
-  geometry.setIndex(new BufferAttribute(corners, 1));
-  const material = new MeshBasicMaterial({ vertexColors: true, ...BOTH_SIDES, transparent: true });
-  return new Mesh(geometry, material);
+  return colouredMesh(positions, colours, quads(all.length));
 }

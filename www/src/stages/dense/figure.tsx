@@ -39,10 +39,8 @@ export default {
     "dense-planes": {
       View: DenseLab,
       // The largest building.
-      begin: ({ results: { dense } }) => {
-        const index = highest(dense?.planes, (plane) => plane.class.building * plane.patches.length);
-        return index < 0 ? null : { kind: "dense", index };
-      },
+      begin: ({ results: { dense } }) =>
+        highest("dense", dense?.planes, (plane) => plane.class.building * plane.patches.length),
     },
   },
 } satisfies StageFigure;

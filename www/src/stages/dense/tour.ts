@@ -4,7 +4,8 @@ import { percentText } from "../../app/parts/numberText";
 import { results } from "../../app/state/results";
 import { selection } from "../../app/state/viewState";
 import { densePlanesOf } from "../../shared/records";
-import { type ClassName, likeliestClass } from "../../shared/surfaceClass";
+import { pickedIndex } from "../../shared/selection";
+import { likeliestClass } from "../../shared/surfaceClass";
 import type { Results } from "../list";
 import type { StageStep } from "../tourStep";
 
@@ -33,10 +34,9 @@ export default [
   },
 ] satisfies readonly StageStep[];
 
-function pickedDensePlane(): DensePlaneParts | null {
-  const picked = selection.value;
-  return picked?.kind === "dense" ? densePlaneParts(results.value, picked.index) : null;
-}
+const pickedDensePlane = () => densePlaneParts(results.value, pickedIndex(selection.value, "dense"));
+
+type DensePlaneParts = NonNullable<ReturnType<typeof densePlaneParts>>;
 
 function denseWords({ patches, rmsM, facets }: DensePlaneParts): string {
   return `${counted(patches, "patches")}, each matched on its own, lie within ${(100 * rmsM).toFixed(0)} cm (RMS) of one plane: that of facet ${facets.join(", ")}.`;
@@ -48,21 +48,8 @@ function halfPlaneWords({ halfPlanes }: DensePlaneParts): string {
     : `From lines, ${counted(halfPlanes, "half-planes")} found it, too: two ways, one plane.`;
 }
 
-interface DensePlaneParts {
-  name: ClassName;
-  probability: number;
-  patches: number;
-  rmsM: number;
-  /** The facets that it proposed, and how many half-planes these were made from. */
-  facets: number[];
-  halfPlanes: number;
-}
-
-/** What a plane of dense matching is, and what became of it; null where there is none. */
-export function densePlaneParts(
-  { dense, facets }: Pick<Results, "dense" | "facets">,
-  index: number,
-): DensePlaneParts | null {
+/** What a plane of dense matching is, the facets that it proposed, and how many half-planes these were made from. */
+export function densePlaneParts({ dense, facets }: Pick<Results, "dense" | "facets">, index: number) {
   const plane = dense?.planes[index];
   const proposed = (facets ?? []).flatMap((facet, i) => (densePlanesOf(facet).includes(index) ? [i] : []));
   return plane === undefined

@@ -1,11 +1,11 @@
 /** B99 figures 21 to 23: the facets in plan, each in the colour of its plane, and the border lines that enclose them. */
 import "../../app/view/figures/figures.css";
-import { closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
+import { buttonShape, closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { FOOTPRINT_WORDS } from "../../app/parts/knownText";
 import { facetRejectionWords } from "../../app/parts/reasonText";
 import { Filmstrip } from "../../app/view/images/Filmstrip";
-import { rectangle } from "../../shared/linear";
+import { boundsOf, rectangle } from "../../shared/linear";
 import type { Facet, FacetTrace, GroupingTrace, Vec2 } from "../../shared/records";
 import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
 import { roofTintHex } from "../../viewer/scene/roofTint";
@@ -62,9 +62,6 @@ function countOf(kind: (typeof BORDER_KINDS)[number], { borders }: GroupingTrace
   return borders.filter((border) => border.kind === kind).length;
 }
 
-/** In SVG the attribute has no capital. */
-const FOCUSABLE = { tabindex: 0 };
-
 interface PlanProps {
   frame: Frame;
   figure: Figure;
@@ -81,9 +78,7 @@ function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
     ...(outlines.length > 0 ? outlines.flat() : grouping.borders.flatMap(({ a, b }): Vec2[] => [a, b])),
     ...footprints.flatMap(({ bounds_m }) => bounds_m),
   ];
-  const xs = points.map(([x = 0]) => x);
-  const ys = points.map(([, y = 0]) => y);
-  const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  const [x0, y0, x1, y1] = boundsOf(points);
   const scale = Math.min(frame.width / (x1 - x0 || 1), frame.height / (y1 - y0 || 1)) * 0.9;
   const at = ([x, y]: readonly number[]): [number, number] => [
     frame.width / 2 + ((x as number) - (x0 + x1) / 2) * scale,
@@ -165,26 +160,12 @@ function PlanArea(of: {
   const { kind, index } = of.picks;
   const picked = of.figure.selection;
   const isChosen = picked?.kind === kind && picked.index === index;
-  const pick = () => {
-    of.figure.act.select(of.picks);
-  };
   return (
-    // biome-ignore lint/a11y/useSemanticElements: SVG has no button
     <path
-      role="button"
-      {...FOCUSABLE}
-      aria-label={of.name}
-      aria-pressed={isChosen}
+      {...buttonShape(of.name, isChosen, () => of.figure.act.select(of.picks))}
       class={`${of.className} ${isChosen ? "chosen" : ""}`}
       d={of.d}
       style={isChosen || of.fill === undefined ? undefined : { fill: of.fill }}
-      onClick={pick}
-      onKeyDown={(event) => {
-        if (event.key === "Enter" || event.key === " ") {
-          event.preventDefault();
-          pick();
-        }
-      }}
     >
       <title>{of.name}</title>
     </path>

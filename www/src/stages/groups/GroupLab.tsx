@@ -1,4 +1,6 @@
 /** B99 figures 17 to 20: the groups of coplanar half-planes. */
+import { degreesOf, slopeOf } from "../../app/parts/numberText";
+import { pickedIndex } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { counted } from "../../app/parts/counted";
 import { Filmstrip } from "../../app/view/images/Filmstrip";
@@ -9,7 +11,6 @@ import type { Figure } from "../figure";
 /** Figures 17 to 20: the groups, largest first. */
 export function GroupLab({ figure }: { figure: Figure }) {
   const { grouping } = figure.results;
-  const picked = figure.selection;
   if (grouping === null) {
     return <p class="lab-hint muted">Run the stage: its groups of coplanar half-planes appear here.</p>;
   }
@@ -20,9 +21,8 @@ export function GroupLab({ figure }: { figure: Figure }) {
     <div class="split-lab even">
       <ol class="groups" data-testid="groups">
         {order.map(({ group, index }) => {
-          const isChosen = picked?.kind === "group" && picked.index === index;
+          const isChosen = pickedIndex(figure.selection, "group") === index;
           const fans = group.members.filter(({ half_plane }) => half_plane !== null).length;
-          const [nx, ny, nz] = group.plane.normal;
           return (
             <li key={index}>
               <button
@@ -38,7 +38,7 @@ export function GroupLab({ figure }: { figure: Figure }) {
                 <span class="muted numbers">
                   {counted(new Set(group.members.map(({ line }) => line)).size, "lines")} ·{" "}
                   {counted(fans, "half-planes")} · {proposalWords(group)}
-                  {((Math.atan2(Math.hypot(nx, ny), Math.abs(nz)) * 180) / Math.PI).toFixed(0)}°
+                  {degreesOf(slopeOf(group.plane.normal)).toFixed(0)}°
                 </span>
               </button>
             </li>

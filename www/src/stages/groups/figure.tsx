@@ -30,10 +30,7 @@ export default {
   kinds: {
     groups: {
       View: GroupLab,
-      begin: ({ results: { grouping } }) => {
-        const index = highest(grouping?.groups, halfPlanesOf);
-        return index < 0 ? null : { kind: "group", index };
-      },
+      begin: ({ results: { grouping } }) => highest("group", grouping?.groups, halfPlanesOf),
     },
   },
 } satisfies StageFigure;

@@ -5,11 +5,11 @@
 import { Color } from "three";
 import { category, PALETTE } from "../../shared/palette";
 import { type Facet, type GroupingTrace, isMadeFrom, type Segment3 } from "../../shared/records";
-import type { Selection } from "../../shared/selection";
+import { pickedIndex, type Selection } from "../../shared/selection";
 import { facetMesh, triangulate } from "../../viewer/layers/facets";
 import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
 import { zUpGroup } from "../../viewer/scene/frame";
-import { disposeObject, type Layer } from "../../viewer/scene/layer";
+import { disposeObject, fade, type Layer } from "../../viewer/scene/layer";
 import { nameLabels } from "../../viewer/scene/nameLabels";
 import { SelectedObject } from "../../viewer/scene/selectedObject";
 import { endsOf, strokes } from "../../viewer/scene/strokes";
@@ -73,10 +73,8 @@ export function buildGroups(
       return group === undefined || group < 0 ? null : { kind: "group", index: group };
     },
     highlight(selection: Selection | null) {
-      for (const name of Object.keys(parts) as (keyof typeof parts)[]) {
-        parts[name].material.opacity = OPACITY[name] * (selection === null ? 1 : DIMMED);
-      }
-      const group = selection?.kind === "group" ? grouping.groups[selection.index] : undefined;
+      fade(parts, OPACITY, selection === null ? 1 : DIMMED);
+      const group = grouping.groups[pickedIndex(selection, "group")];
       const own = [...new Set(group?.members.map(({ line }) => line))];
       const positions = own.flatMap((line) => endsOf(lines, line));
       chosen.show(own.length === 0 ? null : strokes(positions, PALETTE.selected, WIDTH_PX.selected));

@@ -3,6 +3,7 @@ import { counted } from "../../app/parts/counted";
 import { results } from "../../app/state/results";
 import { selection } from "../../app/state/viewState";
 import { isMadeFrom } from "../../shared/records";
+import { pickedIndex } from "../../shared/selection";
 import type { Results } from "../list";
 import type { StageStep } from "../tourStep";
 
@@ -31,10 +32,7 @@ export default [
   },
 ] satisfies readonly StageStep[];
 
-function pickedGroup(): { lines: number; facets: number[] } {
-  const picked = selection.value;
-  return picked?.kind === "group" ? groupParts(results.value, picked.index) : { lines: 0, facets: [] };
-}
+const pickedGroup = () => groupParts(results.value, pickedIndex(selection.value, "group"));
 
 /** The lines of a group, and the facets that it became. */
 export function groupParts(

@@ -1,9 +1,9 @@
 /** B99 figures 10 to 14: the half-plane turned by hand, the views warped onto it, and Sim(theta). */
 import "../../app/view/figures/figures.css";
-import { useEffect, useRef } from "preact/hooks";
 import { axesOf, Chart, closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { REJECTION_WORDS } from "../../app/parts/reasonText";
+import { useDrawn } from "../../app/parts/useDrawn";
 import { bestTheta } from "../../app/selection/inquiry";
 import { questionOf } from "../../kinds/kinds";
 import type { WarpedPicture } from "../../shared/calls";
@@ -105,7 +105,7 @@ function SimChart({ frame, figure, side }: OfSide & { frame: Frame }) {
   const limit = 75;
   const x = { min: -limit, max: limit };
   const y = { min: 0, max: 1 };
-  const [toX, toY] = axesOf(frame, x, y);
+  const [toX, toY, upright, level] = axesOf(frame, x, y);
   const places = (values: readonly number[]) =>
     values.map((value, i) => [toX((thetas[i] ?? 0) / DEGREE), toY(value)] as const);
   const curve = (values: readonly number[]) => pathOf(places(values));
@@ -129,15 +129,7 @@ function SimChart({ frame, figure, side }: OfSide & { frame: Frame }) {
       <path class="posterior" data-testid="posterior" d={closedPathOf([...inside, ...ends])}>
         <title>Posterior over θ (B99 5), as high as the probability that a plane is there</title>
       </path>
-      {typeof least === "number" && (
-        <line
-          class="threshold"
-          x1={frame.left}
-          x2={frame.width - frame.right}
-          y1={toY(least)}
-          y2={toY(least)}
-        />
-      )}
+      {typeof least === "number" && <line class="threshold" {...level(least)} />}
       {views.map((view, i) => (
         <path
           key={view.view}
@@ -149,13 +141,7 @@ function SimChart({ frame, figure, side }: OfSide & { frame: Frame }) {
         />
       ))}
       <path class="curve" d={curve(similarity)} />
-      <line
-        class="cursor"
-        x1={toX(theta / DEGREE)}
-        x2={toX(theta / DEGREE)}
-        y1={frame.top}
-        y2={frame.height - frame.bottom}
-      />
+      <line class="cursor" {...upright(theta / DEGREE)} />
       <circle class="cursor-knob" cx={toX(theta / DEGREE)} cy={frame.height - frame.bottom} r={6} />
     </Chart>
   );
@@ -192,13 +178,8 @@ function Windows({ figure, picture: { about, rgba }, side }: OfSide & { picture:
 }
 
 function Window({ picture: { about, rgba }, index }: { picture: WarpedPicture; index: number }) {
-  const canvas = useRef<HTMLCanvasElement>(null);
   const { columns, rows, points, line_row } = about;
-  useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (context == null) {
-      return;
-    }
+  const draw = (context: CanvasRenderingContext2D) => {
     const size = 4 * columns * rows;
     context.clearRect(0, 0, columns, rows);
     context.putImageData(new ImageData(rgba.slice(index * size, (index + 1) * size), columns, rows), 0, 0);
@@ -211,6 +192,7 @@ function Window({ picture: { about, rgba }, index }: { picture: WarpedPicture; i
     context.globalAlpha = 0.8;
     context.fillRect(0, line_row - 0.5, columns, 1);
     context.globalAlpha = 1;
-  }, [rgba, index]);
+  };
+  const canvas = useDrawn(draw, [rgba, index]);
   return <canvas ref={canvas} width={columns} height={rows} role="img" aria-label="Warped neighbourhood" />;
 }

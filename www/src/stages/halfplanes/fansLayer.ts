@@ -1,20 +1,13 @@
 /** Half-planes as fans: a strip from the 3D line into the half-plane, fading away from the line. */
-import {
-  BufferAttribute,
-  BufferGeometry,
-  LineBasicMaterial,
-  LineSegments,
-  Mesh,
-  MeshBasicMaterial,
-  Vector3,
-} from "three";
+import { BufferGeometry, LineBasicMaterial, LineSegments, Vector3 } from "three";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import { type HalfPlane, isRejected, type Side, type SideRecord, type Vec3 } from "../../shared/records";
-import type { Selection } from "../../shared/selection";
+import { pickedIndex, type Selection } from "../../shared/selection";
 import { fanRing, fanWidth } from "../../viewer/scene/fanRing";
 import { zUpGroup } from "../../viewer/scene/frame";
-import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../../viewer/scene/layer";
+import { colouredMesh, disposeObject, type Layer, quads, rgb, unpicked } from "../../viewer/scene/layer";
+import { SelectedObject } from "../../viewer/scene/selectedObject";
 
 const REJECTED_OFFSET_M = 0.25;
 const ALPHA = { near: 0.75, far: 0.08, dimmed: 0.3 };
@@ -34,7 +27,7 @@ export function buildFans(
   const rejectedSides = sides.filter(isRejected);
   const rejected = rejectedLines(rejectedSides, lines);
   object.add(all, rejected);
-  let chosen: Mesh<BufferGeometry, MeshBasicMaterial> | null = null;
+  const chosen = new SelectedObject(object);
 
   return {
     object,
@@ -46,19 +39,10 @@ export function buildFans(
       return side === undefined ? null : { kind: "side", line: side.line, side: side.side };
     },
     highlight(selection: Selection | null) {
-      if (chosen !== null) {
-        object.remove(chosen);
-        disposeObject(chosen);
-        chosen = null;
-      }
       all.material.opacity = selection === null ? 1 : ALPHA.dimmed;
       rejected.material.opacity = selection === null ? 0.8 : ALPHA.dimmed;
-      const corner = selection?.kind === "halfplane" ? corners[selection.index] : undefined;
-      if (corner !== undefined) {
-        chosen = fanMesh([corner], PALETTE.selected);
-        chosen.renderOrder = 2;
-        object.add(chosen);
-      }
+      const corner = corners[pickedIndex(selection, "halfplane")];
+      chosen.show(corner === undefined ? null : fanMesh([corner], PALETTE.selected, 2));
     },
     dispose: () => disposeObject(object),
   };
@@ -78,11 +62,8 @@ export function buildTurning(ends: readonly [Vec3, Vec3], side: Side, theta: num
   const up = direction.clone().cross(outward);
   up.multiplyScalar(up.z < 0 ? -1 : 1);
   const away = outward.multiplyScalar(width * Math.cos(theta)).addScaledVector(up, width * Math.sin(theta));
-  const fan = fanMesh([[p0, p1, p1.clone().add(away), p0.clone().add(away)]], PALETTE.selected);
-  fan.renderOrder = 3;
-  fan.raycast = () => undefined;
-  object.add(fan);
-  return { object, pick: () => null, highlight: () => undefined, dispose: () => disposeObject(object) };
+  object.add(fanMesh([[p0, p1, p1.clone().add(away), p0.clone().add(away)]], PALETTE.selected, 3));
+  return unpicked({ object, dispose: () => disposeObject(object) });
 }
 
 /** A thin line beside the 3D line, on the rejected side of it. */
@@ -107,23 +88,15 @@ export function fanCorners(halfPlane: HalfPlane, lines: Float64Array): Vector3[]
   return fanRing(halfPlane, lines).map((corner) => new Vector3(...corner));
 }
 
-function fanMesh(corners: readonly Vector3[][], colour: string): Mesh<BufferGeometry, MeshBasicMaterial> {
+/** @param order of those that are drawn over all others */
+function fanMesh(corners: readonly Vector3[][], colour: string, order = 0) {
   const base = rgb(colour);
   const positions = corners.flatMap((fan) => fan.flatMap((corner) => corner.toArray()));
   const colours = corners.flatMap(() => [
     ...[...base, ALPHA.near, ...base, ALPHA.near],
     ...[...base, ALPHA.far, ...base, ALPHA.far],
   ]);
-  const indices = corners.flatMap((_, i) => [0, 1, 2, 0, 2, 3].map((corner) => 4 * i + corner));
-  const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(Float32Array.from(positions), 3));
-  geometry.setAttribute("color", new BufferAttribute(Float32Array.from(colours), 4));
-  geometry.setIndex(indices);
-  const material = new MeshBasicMaterial({
-    vertexColors: true,
-    transparent: true,
-    ...BOTH_SIDES,
-    depthWrite: false,
-  });
-  return new Mesh(geometry, material);
+  const mesh = colouredMesh(positions, colours, quads(corners.length), { depthWrite: false });
+  mesh.renderOrder = order;
+  return mesh;
 }

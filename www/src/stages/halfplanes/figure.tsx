@@ -48,9 +48,11 @@ function similarityRows(figure: Figure): Row[] {
 
 /** The half-plane with the highest and sharpest peak. */
 function sharpestHalfPlane({ results: { halfPlanes } }: Figure): Selection | null {
-  const index = highest(halfPlanes ?? [], ({ probability, amplitude, similarity, theta }) => {
-    // A slope shows more than a level roof, on which all angles begin.
-    return probability * amplitude * similarity * (Math.abs(theta) > 0.2 ? 2 : 1);
-  });
-  return index < 0 ? null : { kind: "halfplane", index };
+  // A slope shows more than a level roof, on which all angles begin.
+  const ofSlope = (theta: number) => (Math.abs(theta) > 0.2 ? 2 : 1);
+  return highest(
+    "halfplane",
+    halfPlanes,
+    ({ probability, amplitude, similarity, theta }) => probability * amplitude * similarity * ofSlope(theta),
+  );
 }

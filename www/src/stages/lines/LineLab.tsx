@@ -1,4 +1,5 @@
 /** B99 figure 9: accuracy against the number of views. */
+import { pickedIndex } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { axesOf, Chart, dotsOf, Fit, type Frame, type Scale } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
@@ -20,7 +21,7 @@ export function LineLab({ figure }: { figure: Figure }) {
 /** Standard deviation of each line against the views that support it; the median of each column as a bar. */
 function Accuracy({ frame, figure }: { frame: Frame; figure: Figure }) {
   const records = matchedRecords(figure.results);
-  const picked = figure.selection?.kind === "line" ? figure.selection.index : -1;
+  const picked = pickedIndex(figure.selection, "line");
   if (records.length === 0) {
     return <p class="lab-hint muted">Run the stage: accuracy against views appears here.</p>;
   }

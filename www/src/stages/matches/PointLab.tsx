@@ -1,8 +1,8 @@
 /** B99 figures 2 to 4: the candidates of a segment, pointwise correspondence, and the two windows that are compared. */
 import "../../app/view/figures/figures.css";
-import { useEffect, useRef } from "preact/hooks";
 import { counted } from "../../app/parts/counted";
 import { outcomeWords } from "../../app/parts/reasonText";
+import { useDrawn } from "../../app/parts/useDrawn";
 import { type Figure, viewName } from "../figure";
 
 const WINDOW_PX = 15;
@@ -95,17 +95,16 @@ export function PointLab({ figure }: { figure: Figure }) {
 
 /** A window of grey values (or of warmth), each pixel a square; stretched to its own range, as correlation takes it. */
 function Grey({ values, title }: { values: readonly number[]; title: string }) {
-  const canvas = useRef<HTMLCanvasElement>(null);
-  useEffect(() => {
-    const context = canvas.current?.getContext("2d");
+  const draw = (context: CanvasRenderingContext2D) => {
     const image = new ImageData(WINDOW_PX, WINDOW_PX);
     const [low, high] = [Math.min(...values), Math.max(...values)];
     values.forEach((value, i) => {
       const grey = Math.round((255 * (value - low)) / (high - low || 1));
       image.data.set([grey, grey, grey, 255], 4 * i);
     });
-    context?.putImageData(image, 0, 0);
-  }, [values]);
+    context.putImageData(image, 0, 0);
+  };
+  const canvas = useDrawn(draw, [values]);
   return (
     <figure>
       <canvas

@@ -1,6 +1,6 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
 import "../../app/view/figures/figures.css";
-import { axesOf, Chart, Fit, type Frame } from "../../app/parts/charts";
+import { axesOf, buttonShape, Chart, Fit, type Frame } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { RELATION_WORDS, refinementWords } from "../../app/parts/reasonText";
 import { SplitLab } from "../../app/view/figures/SplitLab";
@@ -74,7 +74,7 @@ function Relations({ outer, figure, building, of }: RelationsProps) {
   const frame = { ...outer, left: NAMES_PX };
   const x = { min: LEAST, max: MOST };
   const y = { min: 0.5, max: KINDS.length + 0.5 };
-  const [toX, toY] = axesOf(frame, x, y);
+  const [toX, toY, upright, level] = axesOf(frame, x, y);
   const row = (kind: TestedRelation["kind"]) => KINDS.length - KINDS.indexOf(kind);
   const limit = relationLimit(figure.params);
   if (of.relations.length === 0) {
@@ -94,27 +94,13 @@ function Relations({ outer, figure, building, of }: RelationsProps) {
     >
       {KINDS.map((kind) => (
         <g key={kind}>
-          <line
-            class="grid"
-            x1={frame.left}
-            x2={frame.width - frame.right}
-            y1={toY(row(kind))}
-            y2={toY(row(kind))}
-          />
+          <line class="grid" {...level(row(kind))} />
           <text x={frame.left - 8} y={toY(row(kind)) + 3.5} text-anchor="end">
             {RELATION_WORDS[kind]}
           </text>
         </g>
       ))}
-      {limit !== null && (
-        <line
-          class="threshold"
-          x1={toX(Math.log10(limit))}
-          x2={toX(Math.log10(limit))}
-          y1={frame.top}
-          y2={frame.height - frame.bottom}
-        />
-      )}
+      {limit !== null && <line class="threshold" {...upright(Math.log10(limit))} />}
       {of.relations.map((one, i) => (
         <Dot
           key={i}
@@ -131,9 +117,6 @@ function Relations({ outer, figure, building, of }: RelationsProps) {
   );
 }
 
-/** In SVG the attribute has no capital. */
-const FOCUSABLE = { tabindex: 0 };
-
 function Dot(of: {
   relation: TestedRelation;
   cx: number;
@@ -143,23 +126,16 @@ function Dot(of: {
 }) {
   const { kind, chi2, adopted } = of.relation;
   return (
-    // biome-ignore lint/a11y/useSemanticElements: SVG has no button
     <circle
-      role="button"
-      {...FOCUSABLE}
-      aria-label={`${RELATION_WORDS[kind]}, χ² ${chi2.toFixed(1)}, ${adopted ? "adopted" : "rejected"}`}
-      aria-pressed={of.isPicked}
+      {...buttonShape(
+        `${RELATION_WORDS[kind]}, χ² ${chi2.toFixed(1)}, ${adopted ? "adopted" : "rejected"}`,
+        of.isPicked,
+        of.onPick,
+      )}
       class={`relation ${adopted ? "adopted" : "rejected"} ${of.isPicked ? "picked-dot" : ""}`}
       cx={of.cx}
       cy={of.cy}
       r={of.isPicked ? 6 : 4}
-      onClick={of.onPick}
-      onKeyDown={(event) => {
-        if (event.key === "Enter" || event.key === " ") {
-          event.preventDefault();
-          of.onPick();
-        }
-      }}
     />
   );
 }

@@ -32,10 +32,8 @@ export default {
     refinement: {
       View: RefinementLab,
       // The building with the most relations.
-      begin: ({ results: { refinement } }) => {
-        const index = highest(refinement?.buildings, ({ relations }) => relations.length);
-        return index < 0 ? null : { kind: "refinement", index };
-      },
+      begin: ({ results: { refinement } }) =>
+        highest("refinement", refinement?.buildings, ({ relations }) => relations.length),
     },
   },
 } satisfies StageFigure;

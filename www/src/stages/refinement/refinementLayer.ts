@@ -6,7 +6,7 @@ import { Group } from "three";
 import { PALETTE } from "../../shared/palette";
 import { outlinesBefore } from "../../shared/proposed";
 import type { Refinement, Segment3 } from "../../shared/records";
-import type { Selection } from "../../shared/selection";
+import { pickedIndex, type Selection } from "../../shared/selection";
 import { zUpGroup } from "../../viewer/scene/frame";
 import { disposeObject, type Layer } from "../../viewer/scene/layer";
 import { SelectedObject } from "../../viewer/scene/selectedObject";
@@ -46,7 +46,7 @@ function shownOf(refinement: Refinement, selection: Selection | null): Group | n
       ? null
       : new Group().add(over(ends(relation.sides), PALETTE.selected, SELECTED_PX));
   }
-  const index = selection?.kind === "refinement" ? selection.index : -1;
+  const index = pickedIndex(selection, "refinement");
   const found = refinement.buildings[index];
   if (found === undefined) {
     return null;

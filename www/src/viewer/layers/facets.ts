@@ -1,23 +1,23 @@
 /** Roof facets, tinted by their normal: the hue says where a facet faces, the saturation how steep it is. */
 import {
-  BufferAttribute,
   BufferGeometry,
   Color,
   LineBasicMaterial,
   LineSegments,
-  Mesh,
-  MeshBasicMaterial,
+  type Mesh,
+  type MeshBasicMaterial,
   ShapeUtils,
   Vector2,
   Vector3,
 } from "three";
+import { edgesOf } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import type { Facet, Vec3 } from "../../shared/records";
-import type { Selection } from "../../shared/selection";
+import { pickedIndex, type Selection } from "../../shared/selection";
 import { opacityOf } from "../scene/certainty";
 import { middleOf } from "../scene/facetPlan";
 import { zUpGroup } from "../scene/frame";
-import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
+import { colouredMesh, disposeObject, type Layer } from "../scene/layer";
 import { nameLabels } from "../scene/nameLabels";
 import { roofTint } from "../scene/roofTint";
 import { SelectedObject } from "../scene/selectedObject";
@@ -49,7 +49,7 @@ export function buildFacets(facets: readonly Facet[], areNamed = true): Layer {
     },
     highlight(selection: Selection | null) {
       all.material.opacity = selection === null ? OPACITY : DIMMED;
-      const one = selection?.kind === "facet" ? triangles[selection.index] : undefined;
+      const one = triangles[pickedIndex(selection, "facet")];
       chosen.show(one === undefined ? null : facetMesh([one], [new Color(PALETTE.selected)]));
     },
     dispose: () => disposeObject(object),
@@ -80,28 +80,13 @@ export function facetMesh(
     const tint = [...(tints[i] as Color).toArray(), opacities[i] ?? 1];
     return new Array(positions.length / 3).fill(tint).flat() as number[];
   });
-  const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(Float32Array.from(triangles.flat()), 3));
-  geometry.setAttribute("color", new BufferAttribute(Float32Array.from(colours), 4));
-  const material = new MeshBasicMaterial({
-    vertexColors: true,
-    ...BOTH_SIDES,
-    transparent: true,
-    opacity: OPACITY,
-    polygonOffset: true,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
-  });
-  return new Mesh(geometry, material);
+  const behindLines = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+  return colouredMesh(triangles.flat(), colours, null, { opacity: OPACITY, ...behindLines });
 }
 
 function outlines(facets: readonly Facet[]): LineSegments {
   const points = facets.flatMap(({ outer, holes }) =>
-    [outer, ...holes].flatMap((ring) =>
-      ring
-        .flatMap((corner, i) => [corner, ring[(i + 1) % ring.length] as Vec3])
-        .map((p) => new Vector3(...p)),
-    ),
+    [outer, ...holes].flatMap((ring) => edgesOf(ring).flatMap((ends) => ends.map((p) => new Vector3(...p)))),
   );
   const material = new LineBasicMaterial({ color: PALETTE.casing, transparent: true, opacity: 0.7 });
   const lines = new LineSegments(new BufferGeometry().setFromPoints(points), material);

@@ -2,12 +2,12 @@
 import { PALETTE } from "../../shared/palette";
 import type { Vec3 } from "../../shared/records";
 import { zUpGroup } from "../scene/frame";
-import { disposeObject, type Layer } from "../scene/layer";
+import { disposeObject, type Layer, unpicked } from "../scene/layer";
 import { sidesOf, strokes } from "../scene/strokes";
 
 const WIDTH_PX = 4;
 
-export interface Polyline {
+interface Polyline {
   points: readonly Vec3[];
   closed: boolean;
 }
@@ -22,7 +22,7 @@ export function buildHighlight(polylines: readonly Polyline[]): Layer {
   if (sides.length > 0) {
     object.add(above(sides));
   }
-  return { object, pick: () => null, highlight: () => undefined, dispose: () => disposeObject(object) };
+  return unpicked({ object, dispose: () => disposeObject(object) });
 }
 
 function above(positions: readonly number[]) {

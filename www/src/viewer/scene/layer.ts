@@ -1,11 +1,14 @@
 /** What every builder of the viewer returns: an object, what a click on it means, and its end. */
 import {
+  BufferAttribute,
   BufferGeometry,
   Color,
   DoubleSide,
   type Intersection,
   type Material,
-  type Mesh,
+  Mesh,
+  MeshBasicMaterial,
+  type MeshBasicMaterialParameters,
   type Object3D,
   Texture,
 } from "three";
@@ -24,6 +27,17 @@ export interface Layer {
 /** The layer for looking at only: a selection is not of its things. */
 export function unpicked({ object, dispose }: Pick<Layer, "object" | "dispose">): Layer {
   return { object, pick: () => null, highlight: () => undefined, dispose };
+}
+
+/** Makes all parts of a layer as opaque as each of them is, or fainter. */
+export function fade<Name extends string>(
+  parts: Readonly<Record<Name, { material: Material }>>,
+  opacities: Readonly<Record<Name, number>>,
+  by: number,
+): void {
+  for (const name of Object.keys(parts) as Name[]) {
+    parts[name].material.opacity = opacities[name] * by;
+  }
 }
 
 /** Seen from both sides by one shader: what is transparent would be drawn in two passes, each with its own. */
@@ -52,6 +66,33 @@ function disposeMaterial(material: Material | undefined): void {
     }
   }
   material.dispose();
+}
+
+/**
+ * Triangles in colours of their own, see-through.
+ * @param positions three numbers a corner
+ * @param colours four numbers a corner, with its opacity
+ * @param corners of each triangle; without them the positions are in their order
+ */
+export function colouredMesh(
+  positions: ArrayLike<number>,
+  colours: ArrayLike<number>,
+  corners: number[] | null,
+  style: MeshBasicMaterialParameters = {},
+): Mesh<BufferGeometry, MeshBasicMaterial> {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(Float32Array.from(positions), 3));
+  geometry.setAttribute("color", new BufferAttribute(Float32Array.from(colours), 4));
+  geometry.setIndex(corners);
+  return new Mesh(
+    geometry,
+    new MeshBasicMaterial({ vertexColors: true, ...BOTH_SIDES, transparent: true, ...style }),
+  );
+}
+
+/** The corners of the triangles of so many figures of four corners, one after the other. */
+export function quads(count: number): number[] {
+  return Array.from({ length: count }, (_, i) => [0, 1, 2, 0, 2, 3].map((corner) => 4 * i + corner)).flat();
 }
 
 /** A colour's components as the vertex attributes of a geometry want them. */

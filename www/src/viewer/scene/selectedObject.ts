@@ -17,7 +17,9 @@ export class SelectedObject {
     }
     this.#shown = object;
     if (object !== null) {
-      object.raycast = () => undefined;
+      object.traverse((one) => {
+        one.raycast = () => undefined;
+      });
       this.#parent.add(object);
     }
   }

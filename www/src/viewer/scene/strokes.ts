@@ -3,6 +3,7 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { LINE_STRIDE } from "../../shared/flatArrays";
+import { edgesOf } from "../../shared/linear";
 import type { Vec3 } from "../../shared/records";
 import { rgb } from "./layer";
 
@@ -32,7 +33,5 @@ export function endsOf(lines: Float64Array, index: number): number[] {
 
 /** The sides of closed rings, as `strokes` takes them. */
 export function sidesOf(rings: readonly (readonly Vec3[])[]): number[] {
-  return rings.flatMap((ring) =>
-    ring.flatMap((corner, i) => [...corner, ...(ring[(i + 1) % ring.length] ?? corner)]),
-  );
+  return rings.flatMap((ring) => edgesOf(ring).flat(2));
 }

@@ -1,7 +1,8 @@
 /** A photograph with something drawn over it, that hears where it is clicked, in its own pixels. */
 import { useSignal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect } from "preact/hooks";
+import { useDrawn } from "../../parts/useDrawn";
 import { readPhotographs } from "./orientation";
 import { PICTURE_PX, pictureOf } from "./photographPicture";
 
@@ -20,7 +21,6 @@ interface Props {
 }
 
 export function PhotographCanvas({ file, label, draw, of, onPlace, onKey, head, children }: Props) {
-  const canvas = useRef<HTMLCanvasElement>(null);
   const bitmap = useSignal<ImageBitmap | null>(null);
   const size = readPhotographs.value.find((one) => one.file === file)?.size ?? null;
   useEffect(() => {
@@ -35,9 +35,8 @@ export function PhotographCanvas({ file, label, draw, of, onPlace, onKey, head, 
       isCurrent = false;
     };
   }, [file]);
-  useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (context != null && size !== null) {
+  const drawAll = (context: CanvasRenderingContext2D) => {
+    if (size !== null) {
       const { width, height } = context.canvas;
       context.clearRect(0, 0, width, height);
       if (bitmap.value !== null) {
@@ -45,7 +44,8 @@ export function PhotographCanvas({ file, label, draw, of, onPlace, onKey, head, 
       }
       draw(context, width / size[0]);
     }
-  }, [bitmap.value, size, ...of]);
+  };
+  const canvas = useDrawn(drawAll, [bitmap.value, size, ...of]);
   if (size === null) {
     return null;
   }

@@ -2,8 +2,8 @@
 import { computed } from "@preact/signals";
 import type { ParamTree } from "../../../shared/paramTree";
 import type { Facet } from "../../../shared/records";
+import { slopedArea } from "../../../shared/surfaceClass";
 import { METHOD_WORDS, methodOf } from "../../../stages/catalogue";
-import { slopedArea } from "../../parts/facetArea";
 import { fieldText, paramName, paramSections } from "../../settings/parameterForm";
 import type { KeptResult } from "../../state/keptResult";
 import { defaults, method, params } from "../../state/parameters";

@@ -1,4 +1,6 @@
 /** Corrections of the model by hand: what can be done with the selected facet, and what has been done. */
+import { pickedIndex } from "../../../shared/selection";
+import { degreesOf, slopeOf } from "../../parts/numberText";
 import "./corrections.css";
 import { signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
@@ -203,8 +205,7 @@ function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
 
 /** A place where a roof may be and the model has none becomes a facet. */
 function Uncovered() {
-  const picked = selection.value;
-  const roof = picked?.kind === "uncoveredRoof" ? mainResults.value.uncovered?.[picked.index] : undefined;
+  const roof = mainResults.value.uncovered?.[pickedIndex(selection.value, "uncoveredRoof")];
   if (roof === undefined) {
     return null;
   }
@@ -223,7 +224,7 @@ function Uncovered() {
 
 /** Slope, ground and eave as numbers. */
 function Numbers({ facet, place }: { facet: Facet; place: Vec3 }) {
-  const slope = (Math.acos(Math.min(1, facet.plane.normal[2])) * 180) / Math.PI;
+  const slope = degreesOf(slopeOf(facet.plane.normal));
   const low = Math.min(...facet.outer.map(([, , z]) => z)) + origin()[2];
   return (
     <>

@@ -1,6 +1,7 @@
 /** The selected thing in every view, each picture zoomed to it: "it lights up in every image". */
 import { marksOf } from "../../../kinds/kinds";
 import type { Mark } from "../../../kinds/parts/marks";
+import { boundsOf } from "../../../shared/linear";
 import "./images.css";
 import { useEffect, useRef } from "preact/hooks";
 import type { Selection } from "../../../shared/selection";
@@ -79,16 +80,9 @@ function ratio(): number {
   return Math.max(1, Math.round(window.devicePixelRatio));
 }
 
-function boundsOf(marks: readonly Mark[]): [number, number, number, number] {
-  const points = marks.flatMap(({ points: own }) => own);
-  const xs = points.map(([x]) => x);
-  const ys = points.map(([, y]) => y);
-  return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
-}
-
 /** Does the view show the middle of the marks? */
 function isInside(marks: readonly Mark[], { width, height }: Size): boolean {
-  const [x0, y0, x1, y1] = boundsOf(marks);
+  const [x0, y0, x1, y1] = boundsOf(marks.flatMap(({ points }) => points));
   const [x, y] = [(x0 + x1) / 2, (y0 + y1) / 2];
   return x > 0 && y > 0 && x < width && y < height;
 }

@@ -2,9 +2,11 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Mark } from "../../../kinds/parts/marks";
 import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_STRIDE } from "../../../shared/flatArrays";
+import { isInside } from "../../../shared/linear";
 import type { Vec2 } from "../../../shared/records";
 import type { Selection } from "../../../shared/selection";
 import { type Place, PressWatch } from "../../../viewer/tools/press";
+import { useSize } from "../../parts/useDrawn";
 import { textScale } from "../../state/textScale";
 import { drawView, type Overlay } from "./drawing";
 import { cornerAt } from "./graphOverlay";
@@ -56,9 +58,8 @@ export function ImageCanvas({
   onPick,
   onPlace,
 }: Props) {
-  const canvas = useRef<HTMLCanvasElement>(null);
+  const [canvas, box] = useSize<HTMLCanvasElement>();
   void textScale.value;
-  const [box, setBox] = useState<Size>({ width: 0, height: 0 });
   const [moved, setMoved] = useState<Viewport | null>(null);
   const held = useRef(new Map<number, Point>());
   const pick = useRef<(at: Place) => void>(() => undefined);
@@ -66,7 +67,6 @@ export function ImageCanvas({
   const fitted = fitImage(image, box);
   const viewport = moved ?? (follows ? around(marks, image, box) : null) ?? fitted;
 
-  useEffect(() => observeSize(canvas.current, setBox), []);
   // Another image starts whole.
   useEffect(() => setMoved(null), [image]);
   // So does another selection, where the image follows it.
@@ -211,24 +211,13 @@ function pickAt(overlay: Overlay, view: number, at: Point, reach: number): Selec
     return index < 0 ? null : { kind: "rejectedSegment", view, index };
   };
   const region = (): Selection | null => {
-    const index = regions?.findIndex(({ rings }) => holds(rings, at)) ?? -1;
+    const index =
+      regions?.findIndex(
+        ({ rings }) => rings.filter((ring) => isInside([at.x, at.y], ring)).length % 2 === 1,
+      ) ?? -1;
     return index < 0 ? null : { kind: "region", view, index };
   };
   return (segmentsFirst ? (segment() ?? line()) : (line() ?? segment())) ?? rejectedOne() ?? region();
-}
-
-/** Is the point inside the rings, holes left out? Counts the crossings of a ray to the right. */
-function holds(rings: readonly (readonly Vec2[])[], { x, y }: Point): boolean {
-  let inside = false;
-  for (const ring of rings) {
-    ring.forEach(([x0, y0], i) => {
-      const [x1, y1] = ring[(i + 1) % ring.length] as Vec2;
-      if (y0 > y !== y1 > y && x < x0 + ((y - y0) / (y1 - y0)) * (x1 - x0)) {
-        inside = !inside;
-      }
-    });
-  }
-  return inside;
 }
 
 /** Null: the whole image again; undefined: the key means nothing here. */
@@ -258,17 +247,6 @@ function viewportAfterKey(
     default:
       return undefined;
   }
-}
-
-function observeSize(element: HTMLElement | null, onSize: (size: Size) => void): (() => void) | undefined {
-  if (element === null) {
-    return undefined;
-  }
-  const observer = new ResizeObserver(() =>
-    onSize({ width: element.clientWidth, height: element.clientHeight }),
-  );
-  observer.observe(element);
-  return () => observer.disconnect();
 }
 
 function resizeBacking(canvas: HTMLCanvasElement, box: Size, ratio: number): void {

@@ -1,7 +1,7 @@
 /** Draws one view's image and overlay. It computes nothing but where things lie on the screen. */
-
 import type { Mark } from "../../../kinds/parts/marks";
 import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE } from "../../../shared/flatArrays";
+import { rectangle } from "../../../shared/linear";
 import { category, PALETTE } from "../../../shared/palette";
 import type { Vec2 } from "../../../shared/records";
 import type { Selection } from "../../../shared/selection";
@@ -149,12 +149,7 @@ function drawLabel(
   const left = isLeft ? x - width - 4 * unit : x + 4 * unit;
   const top = labelSide === "below" ? y + 2 * unit : y - 17 * unit;
   const plate = pen.path();
-  trace(plate, [
-    [left, top],
-    [left + width, top],
-    [left + width, top + 15 * unit],
-    [left, top + 15 * unit],
-  ]);
+  trace(plate, rectangle([left, top], [left + width, top + 15 * unit]));
   pen.fill(plate, { colour: PALETTE.casing, alpha: 0.85 });
   pen.text(text, left + 4 * unit, top + size, size, colour);
 }

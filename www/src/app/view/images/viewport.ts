@@ -2,6 +2,7 @@
  * Geometry of a zoomed image: where image pixels lie on the canvas, and which segment is under the pointer.
  * The centre of the top-left pixel is (0.5, 0.5), as in the core, so image coordinates need no shift.
  */
+import { boundsOf } from "../../../shared/linear";
 
 export interface Point {
   x: number;
@@ -44,9 +45,7 @@ export function fitPoints(
   if (points.length === 0) {
     return null;
   }
-  const xs = points.map(([x]) => x);
-  const ys = points.map(([, y]) => y);
-  const [x0, y0, x1, y1] = [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+  const [x0, y0, x1, y1] = boundsOf(points);
   const scale = Math.min(
     maxScale,
     box.width / (x1 - x0 + 2 * marginPx),

@@ -1,6 +1,7 @@
 /** The buildings of the model, as they are listed, with the numbers that they have in the report and in the files. */
 import type { Facet, Vec3 } from "../../../shared/records";
-import { slopedArea } from "../../parts/facetArea";
+import { slopedArea } from "../../../shared/surfaceClass";
+import { degreesOf, slopeOf } from "../../parts/numberText";
 import { doubtfulFacets } from "../../results/corrections/doubtful";
 
 export interface RoofFace {
@@ -28,7 +29,7 @@ export function buildings(facets: readonly Facet[]): Building[] {
   const byNumber = new Map<number, RoofFace[]>();
   facets.forEach((facet, index) => {
     const { building, plane, probability, outer } = facet;
-    const slopeDeg = (Math.acos(Math.min(1, Math.abs(plane.normal[2]))) * 180) / Math.PI;
+    const slopeDeg = degreesOf(slopeOf(plane.normal));
     const isDoubtful = doubtful.has(index);
     const face = { index, area: slopedArea(facet), slopeDeg, probability, isDoubtful, outer };
     byNumber.set(building, [...(byNumber.get(building) ?? []), face]);

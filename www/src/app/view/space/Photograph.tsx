@@ -1,8 +1,8 @@
 /** The photograph over the model, where the camera sees it, and the choice of the camera. */
 import { type ReadonlySignal, signal } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
 import { fitShares } from "../../../viewer/scene/photoProjection";
 import type { Viewer } from "../../../viewer/viewer";
+import { useDrawn } from "../../parts/useDrawn";
 import { images, scene } from "../../state/scene";
 
 /** The view whose camera is looked through, and how opaque its photograph is. */
@@ -54,11 +54,9 @@ export function FlyTo({ viewer }: { viewer: Viewer | null }) {
 
 /** The photograph over the model, where the camera sees it. */
 export function Photograph({ view }: { view: number }) {
-  const canvas = useRef<HTMLCanvasElement>(null);
   const image = images.value[view];
-  useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (context != null && image !== undefined) {
+  const draw = (context: CanvasRenderingContext2D) => {
+    if (image !== undefined) {
       const { clientWidth, clientHeight } = context.canvas;
       const [sx, sy] = fitShares(image, clientWidth / clientHeight);
       context.canvas.width = Math.round(clientWidth * window.devicePixelRatio);
@@ -67,7 +65,8 @@ export function Photograph({ view }: { view: number }) {
       context.imageSmoothingQuality = "high";
       context.drawImage(image, (width * (1 - sx)) / 2, (height * (1 - sy)) / 2, width * sx, height * sy);
     }
-  }, [image, view]);
+  };
+  const canvas = useDrawn(draw, [image, view]);
   return (
     <canvas
       ref={canvas}

@@ -1,6 +1,7 @@
 /** The profile along a vertical cut, drawn to one scale both ways, with heights and slopes. */
 import type { ProfilePiece, Section } from "../../../viewer/tools/section";
 import { axesOf, Chart, Fit, type Frame, type Scale } from "../../parts/charts";
+import { degreesOf } from "../../parts/numberText";
 import { scene } from "../../state/scene";
 
 /** Labels nearer to each other than this are left out, units of the view box. */
@@ -96,7 +97,7 @@ function slopeLabels(pieces: readonly ProfilePiece[], at: At): Label[] {
     if (Math.abs(slope) > WALL || x2 - x1 < LABEL_SPACE || to[1] === from[1]) {
       return [];
     }
-    return [[`${((slope * 180) / Math.PI).toFixed(1)}°`, (x1 + x2) / 2, (y1 + y2) / 2 + 14]];
+    return [[`${degreesOf(slope).toFixed(1)}°`, (x1 + x2) / 2, (y1 + y2) / 2 + 14]];
   });
 }
 

@@ -7,6 +7,7 @@ import type { Corner, Measured, Taken } from "../../../viewer/tools/measure";
 import type { Section } from "../../../viewer/tools/section";
 import type { Viewer } from "../../../viewer/viewer";
 import { Menu } from "../../parts/Menu";
+import { degreesOf } from "../../parts/numberText";
 import { saveFile } from "../../parts/saveFile";
 import { isCorrecting, takePoint } from "../../results/corrections/drawn";
 import { mainResults } from "../../state/results";
@@ -234,7 +235,7 @@ function Reading() {
           ["Distance", `${found.distanceM.toFixed(2)} m`],
           ["In plan", `${(found.planM ?? 0).toFixed(2)} m`],
           ["Difference in height", `${(found.heightM ?? 0).toFixed(2)} m`],
-          ["Slope", `${(((found.slope ?? 0) * 180) / Math.PI).toFixed(1)}°`],
+          ["Slope", `${degreesOf(found.slope ?? 0).toFixed(1)}°`],
         ] as const)),
     ...(found.areaM2 === null ? [] : [["Area", `${found.areaM2.toFixed(2)} m²`] as const]),
   ];

@@ -1,6 +1,6 @@
 /** Says at how many places a roof may be and the model has none, and leads to them one after the other. */
-
 import { signal } from "@preact/signals";
+import { pickedIndex } from "../../../shared/selection";
 import { counted } from "../../parts/counted";
 import { results } from "../../state/results";
 import { aimAt, select, selection } from "../../state/viewState";
@@ -15,8 +15,7 @@ export function Unmodelled() {
     return null;
   }
   const showNext = () => {
-    const picked = selection.peek();
-    const shown = picked?.kind === "uncoveredRoof" ? picked.index : -1;
+    const shown = pickedIndex(selection.peek(), "uncoveredRoof");
     const index = (shown + 1) % places;
     select({ kind: "uncoveredRoof", index });
     aimAt(uncovered?.[index]?.outline ?? []);

@@ -1,6 +1,5 @@
 /** Edges that are drawn in the photographs, and the lines that were found for them. */
-
-import { type Mark, project } from "../../../kinds/parts/marks";
+import { diamond, type Mark, project } from "../../../kinds/parts/marks";
 import { PALETTE } from "../../../shared/palette";
 import type { Vec2 } from "../../../shared/records";
 import type { Figure } from "../../../stages/figure";
@@ -22,13 +21,7 @@ export function edgeTool({ scene, results }: Pick<Figure, "scene" | "results">):
     if (first === null || first.view !== view) {
       return [];
     }
-    const [x, y] = first.at;
-    const points: Vec2[] = [
-      [x - START_PX, y],
-      [x, y - START_PX],
-      [x + START_PX, y],
-      [x, y + START_PX],
-    ];
+    const points = diamond(first.at, START_PX);
     return [{ points, closed: true, colour: PALETTE.selected, width: 2, fill: 0.5 }];
   };
   const onPlace = (view: number, at: Vec2 | null, scale: number) => {
