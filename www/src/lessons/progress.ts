@@ -7,7 +7,7 @@ const guesses = signal<ReadonlyMap<string, Guess>>(new Map());
 
 export const seen: ReadonlySignal<ReadonlySet<string>> = seenScreens;
 
-export interface Guess {
+interface Guess {
   /** The option or the estimate; null where the guess is in the figure. */
   value: number | null;
 }

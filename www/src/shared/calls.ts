@@ -87,7 +87,7 @@ type Inner =
   | "clearFiles"
   | typeof Symbol.dispose;
 
-export type Calls = Omit<Session, keyof WorkerCalls | Inner> & WorkerCalls;
+type Calls = Omit<Session, keyof WorkerCalls | Inner> & WorkerCalls;
 export type CallName = keyof Calls;
 export type Args<K extends CallName> = Parameters<Calls[K]>;
 export type Result<K extends CallName> = Awaited<ReturnType<Calls[K]>>;

@@ -30,7 +30,7 @@ export const THEME_COLOURS: Record<"light" | "dark", ThemeColours> = {
 };
 
 /** Hues for things that have no order: groups, regions, the two main directions. Equal weight, told apart without red and green. */
-export const CATEGORIES = [
+const CATEGORIES = [
   "#4aa8ff",
   "#ff9d2e",
   "#c78bf2",

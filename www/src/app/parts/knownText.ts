@@ -11,7 +11,7 @@ export const FOOTPRINT_WORDS: Record<FootprintVerdict, string> = {
 };
 
 /** What can be known beforehand. */
-export type KnownThing = "terrain" | "footprints" | "cloud";
+type KnownThing = "terrain" | "footprints" | "cloud";
 
 const USES: Record<KnownThing, string> = {
   terrain: "it gives the ground",

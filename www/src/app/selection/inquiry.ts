@@ -1,5 +1,4 @@
 /** What follows from a selection: a figure asks the core about the thing that was picked. */
-
 import { questionOf } from "../../kinds/kinds";
 import type { Question } from "../../kinds/parts/kind";
 import type { Args, CallName, Result } from "../../shared/calls";
@@ -9,7 +8,7 @@ import { NO_DETAIL, type Resumed, type SelectionDetail } from "../../stages/figu
 import type { Results } from "../../stages/list";
 
 /** Whose selection it is, and whom it asks. */
-export interface Inquirer {
+interface Inquirer {
   selection(): Selection | null;
   results(): Results;
   detail(): SelectionDetail;

@@ -3,7 +3,7 @@ import { batch } from "@preact/signals";
 import { type Phase, showActivity, showIdle } from "../state/activity";
 import { type ActionKind, RULES, type Rule, SAME_AGAIN } from "./actionRules";
 
-export interface Action {
+interface Action {
   kind: ActionKind;
   /** Two of one name are the same; without a name an action is like no other. */
   name?: string;

@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { keep, kept } from "./keptChoice";
 
-export type Theme = "light" | "dark";
+type Theme = "light" | "dark";
 
 const STORAGE_KEY = "ridgeline.theme";
 const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");

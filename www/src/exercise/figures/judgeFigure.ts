@@ -14,7 +14,7 @@ export interface Asked {
 }
 
 /** What a student gives beside the figure itself. */
-export type Asks =
+type Asks =
   /** Nothing: the figure's state is the answer. */
   | { by: "state" }
   | { by: "choice"; choices(shown: Figure): readonly string[] }

@@ -199,7 +199,7 @@ const edgesAround = ({ id }: RoofFace) =>
   EDGES.filter(({ faces }) => faces.includes(id)).map(({ kind }) => kind);
 
 /** The face that a facet in plan is of. */
-export function faceOfFacet(outer: readonly (readonly number[])[]): RoofFace | null {
+function faceOfFacet(outer: readonly (readonly number[])[]): RoofFace | null {
   const places = sampled([outer], 0.5);
   const faces = places.flatMap((place) => faceOver(place) ?? []);
   const count = (face: RoofFace) => faces.filter((one) => one === face).length;

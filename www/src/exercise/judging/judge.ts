@@ -5,7 +5,7 @@
 import type { About, NamedMistake, Verdict } from "./about";
 import type { Random } from "./random";
 
-export interface Planted<Input extends readonly unknown[], Answer> {
+interface Planted<Input extends readonly unknown[], Answer> {
   input: Input;
   /** How far an answer is from what was planted, in the unit of the exercise. */
   error(answer: Answer): number;

@@ -25,7 +25,7 @@ export function normal(random: Random): number {
   return Math.sqrt(-2 * Math.log(1 - random())) * Math.cos(2 * Math.PI * random());
 }
 
-export interface PlantedCamera {
+interface PlantedCamera {
   /** Focal length and principal point in pixels. */
   k: Mat;
   /** From the world to the camera: x right, y down, z forward. */
@@ -56,7 +56,7 @@ export function plantedCamera(random: Random): PlantedCamera {
 }
 
 /** K [R | t] */
-export function projectionOf(k: Mat, r: Mat, t: readonly number[]): Mat {
+function projectionOf(k: Mat, r: Mat, t: readonly number[]): Mat {
   return times(
     k,
     r.map((row, i) => [...row, t[i] ?? 0]),

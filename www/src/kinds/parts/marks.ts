@@ -25,7 +25,7 @@ export interface Mark {
   labelSide?: "left" | "right" | "below";
 }
 
-export type Style = Omit<Mark, "points">;
+type Style = Omit<Mark, "points">;
 
 /** The view in which marks are drawn, and what is found in it. */
 export interface Seen extends Pick<Figure, "results" | "detail"> {

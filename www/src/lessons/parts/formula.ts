@@ -14,7 +14,7 @@ export function symbolsIn(node: MathNode): MathSymbol[] {
 }
 
 /** A paragraph in pieces: words, *emphasis* and $formulas$. */
-export interface Piece {
+interface Piece {
   kind: "words" | "emphasis" | "formula";
   text: string;
   /** The punctuation that stays with a formula at the end of a line. */

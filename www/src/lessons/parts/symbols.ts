@@ -103,7 +103,7 @@ export const SYMBOLS = {
   i: letter("i", 0, "counts views, pixels or windows"),
 } as const satisfies Record<string, MathSymbol>;
 
-export type SymbolName = keyof typeof SYMBOLS;
+type SymbolName = keyof typeof SYMBOLS;
 
 export function symbolOf(word: string): MathSymbol | null {
   return Object.hasOwn(SYMBOLS, word) ? SYMBOLS[word as SymbolName] : null;

@@ -16,7 +16,7 @@ import {
 import type { Vec2, Vec3 } from "../../shared/records";
 import { centreOf, partsOf, pointAtHeight, projected } from "../toy/camera";
 
-export interface Seeing {
+interface Seeing {
   width: number;
   height: number;
   P: Mat;

@@ -3,7 +3,7 @@
 /** Bits for the place of a break among n pixels, and for a grey value. */
 const GREY_BITS = 8;
 
-export interface Description {
+interface Description {
   /** Bits that state the stretches: breaks and grey values. */
   model: number;
   /** Bits that state what the pixels deviate by. */

@@ -5,7 +5,7 @@ import { type Camera, imageOf, planeOfLine, projection } from "./camera";
 import { normal, stream } from "./evidence";
 import { EDGES } from "./house";
 
-export interface SeenLine {
+interface SeenLine {
   view: number;
   ends: readonly [Vec2, Vec2];
   /** Length in the image, pixels. */

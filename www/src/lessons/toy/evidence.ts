@@ -1,7 +1,7 @@
 /** Evidence in nats: logarithms of likelihood ratios, which add where observations are independent. */
 import type { Vec2 } from "../../shared/records";
 
-export interface Beta {
+interface Beta {
   a: number;
   b: number;
 }

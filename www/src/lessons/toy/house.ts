@@ -52,7 +52,7 @@ export const EDGES: readonly (readonly [Vec3, Vec3])[] = [
 ];
 
 /** The faces that a place sees. The house is convex, so no face hides another. */
-export function facesSeenFrom(place: Vec3): readonly Face[] {
+function facesSeenFrom(place: Vec3): readonly Face[] {
   return FACES.filter(({ corners, normal }) => dot(normal, sub(place, corners[0] as Vec3)) > 0);
 }
 

@@ -2,7 +2,7 @@
 import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace, Vector2 } from "three";
 import type { Vec3 } from "../../shared/records";
 
-export interface NamedPlace {
+interface NamedPlace {
   text: string;
   at: Vec3;
 }

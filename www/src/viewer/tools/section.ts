@@ -3,7 +3,7 @@ import { type BufferGeometry, Mesh, type Object3D, Plane, Vector3 } from "three"
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 
 /** Metres along the cut from its first point, and height in the viewer's frame, metres. */
-export type ProfilePoint = readonly [along: number, height: number];
+type ProfilePoint = readonly [along: number, height: number];
 
 /** A straight piece of the profile, from left to right. */
 export interface ProfilePiece {

@@ -53,7 +53,7 @@ export function regionBetween(
 }
 
 /** How well a place is covered, by the number of photographs that show it. */
-export interface Cover {
+interface Cover {
   from: number;
   words: string;
   alpha: number;

@@ -5,7 +5,7 @@ import type { ImageReport } from "../../../shared/records";
 export type Photograph = Pick<ImageReport, "path" | "stated">;
 
 /** A photograph in plan, metres east and north of the middle of all. */
-export interface PlanPoint {
+interface PlanPoint {
   path: string;
   east: number;
   north: number;

@@ -6,7 +6,7 @@ import { secondsPerMegapixel } from "./pace";
 export type Region = readonly [x0: number, y0: number, x1: number, y1: number];
 
 /** A run over the tiles that is going on. */
-export interface TileRun {
+interface TileRun {
   /** Which tile, and the fraction of it that is done. */
   tile: number;
   fraction: number;

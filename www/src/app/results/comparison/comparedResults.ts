@@ -44,7 +44,7 @@ export function presentResult(): KeptResult | null {
   );
 }
 
-export type ComparedRow = readonly [name: string, kept: string, now: string];
+type ComparedRow = readonly [name: string, kept: string, now: string];
 
 /** The numbers of two results, and the parameters in which they differ. */
 export function comparedRows(kept: KeptResult): ComparedRow[] {

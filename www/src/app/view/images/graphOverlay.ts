@@ -2,7 +2,7 @@
 import type { AdjacencyGraphs, ImageGraph, Vec2 } from "../../../shared/records";
 
 /** A corner of the image, and the corner in space that it shows, if any. */
-export interface GraphCorner {
+interface GraphCorner {
   at: Vec2;
   space: number | null;
 }

@@ -69,7 +69,7 @@ export function paintingOf(canvas: HTMLCanvasElement): { window: Window; draw: D
 }
 
 /** From this zoom on, single pixels are what a viewer wants to see. */
-export const PIXELATED_FROM = 4;
+const PIXELATED_FROM = 4;
 
 export function fontOf(size: number): string {
   return `600 ${size}px system-ui, "Liberation Sans", sans-serif`;

@@ -3,7 +3,7 @@ import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { textScale } from "../../state/textScale";
 
 /** "phone": no workbench; "stacked": the side columns below the views; "tight": narrow columns beside them. */
-export type Layout = "phone" | "stacked" | "tight" | "wide";
+type Layout = "phone" | "stacked" | "tight" | "wide";
 
 /** CSS pixels: below this a screen is held in the hand. */
 const PHONE_PX = 600;
