@@ -1,4 +1,6 @@
 /** Style sheets of the page inside an element: what they say of the page holds for the element, by its theme and its own type. */
+import baseCss from "../app/parts/base.css?inline";
+import hostCss from "./host.css?inline";
 
 const DARK = /:root\[data-theme="?dark"?\]\s*\{([^}]*)\}/;
 
@@ -14,13 +16,13 @@ function forHost(css: string): string {
     .replace(/([\d.])rem\b/g, "$1em");
 }
 
-/** Makes a sheet when it is first asked for: one for all elements of a kind. */
+/** Makes a sheet, with what every element has, when it is first asked for: one for all elements of a kind. */
 export function hostSheet(...sheets: readonly string[]): () => CSSStyleSheet {
   let made: CSSStyleSheet | null = null;
   return () => {
     if (made === null) {
       made = new CSSStyleSheet();
-      made.replaceSync(sheets.map(forHost).join("\n"));
+      made.replaceSync([baseCss, hostCss, ...sheets].map(forHost).join("\n"));
     }
     return made;
   };

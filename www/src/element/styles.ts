@@ -1,6 +1,4 @@
 /** What figures look like: as on the page. */
-
-import baseCss from "../app/parts/base.css?inline";
 import chartsCss from "../app/parts/charts.css?inline";
 import partsCss from "../app/parts/parts.css?inline";
 import takeAlongCss from "../app/results/takeAlong/takeAlong.css?inline";
@@ -11,7 +9,6 @@ import elementCss from "./element.css?inline";
 import { hostSheet } from "./hostSheet";
 
 export const styleSheet = hostSheet(
-  baseCss,
   partsCss,
   chartsCss,
   imagesCss,

@@ -1,18 +1,18 @@
 /** `<ridgeline-exercise name="triangulate">`: do it, and hear whether it is right or which mistake it is. */
 import { signal } from "@preact/signals";
-import { render } from "preact";
-import baseCss from "../app/parts/base.css?inline";
+import { type ComponentType, render } from "preact";
 import glossaryCss from "../app/words/glossary.css?inline";
 import { hostSheet } from "../element/hostSheet";
-import { EXERCISES, exerciseNamed } from "./exercises";
+import { type AnyExercise, EXERCISES, exerciseNamed } from "./exercises";
 import type { Verdict } from "./judging/about";
 import exerciseCss from "./views/exercise.css?inline";
 import { FigureView } from "./views/FigureView";
 import { FunctionView } from "./views/FunctionView";
 import { anySeed, NumberView } from "./views/NumberView";
+import type { ViewProps } from "./views/view";
 
 const TAG = "ridgeline-exercise";
-const styleSheet = hostSheet(baseCss, glossaryCss, exerciseCss);
+const styleSheet = hostSheet(glossaryCss, exerciseCss);
 
 export interface Checked {
   name: string;
@@ -83,6 +83,11 @@ export class RidgelineExercise extends HTMLElement {
   }
 }
 
+/** Each takes the exercises of its own kind. */
+const VIEWS = { function: FunctionView, number: NumberView, figure: FigureView } as unknown as Readonly<
+  Record<AnyExercise["kind"], ComponentType<ViewProps<AnyExercise>>>
+>;
+
 interface Place {
   base: string | null;
   theme: string | null;
@@ -106,47 +111,24 @@ function Root({ name, code, seed, place, onVerdict }: RootProps) {
       </p>
     );
   }
-  const write = (written: string) => {
-    code.value = written;
-  };
-  switch (exercise.kind) {
-    case "function":
-      return (
-        <FunctionView
-          key={exercise.name}
-          exercise={exercise}
-          code={code.value ?? exercise.starter}
-          onCode={write}
-          onVerdict={onVerdict}
-        />
-      );
-    case "number":
-      return (
-        <NumberView
-          key={exercise.name}
-          exercise={exercise}
-          seed={seed.value ?? 0}
-          onSeed={(drawn) => {
-            seed.value = drawn;
-          }}
-          written={code.value ?? ""}
-          onWritten={write}
-          onVerdict={onVerdict}
-        />
-      );
-    case "figure":
-      return (
-        <FigureView
-          key={exercise.name}
-          exercise={exercise}
-          {...place.value}
-          written={code.value ?? ""}
-          onWritten={write}
-          onVerdict={onVerdict}
-          needFigure={needFigure}
-        />
-      );
-  }
+  const View = VIEWS[exercise.kind];
+  return (
+    <View
+      key={exercise.name}
+      exercise={exercise}
+      written={code.value}
+      onWritten={(written) => {
+        code.value = written;
+      }}
+      seed={seed.value ?? 0}
+      onSeed={(drawn) => {
+        seed.value = drawn;
+      }}
+      {...place.value}
+      needFigure={needFigure}
+      onVerdict={onVerdict}
+    />
+  );
 }
 
 /**

@@ -3,7 +3,7 @@ import { FIGURE_EXERCISES } from "./figures/index";
 import type { FigureExercise } from "./figures/judgeFigure";
 import { type AnyFunction, FUNCTIONS } from "./functions/index";
 import { LESSONS, type Lesson, type NamedMistake } from "./judging/about";
-import type { NumberExercise } from "./judging/judgeNumber";
+import { drawOf, type NumberExercise } from "./judging/judgeNumber";
 import { NUMBERS } from "./numbers/index";
 
 export type AnyExercise = AnyFunction | NumberExercise | FigureExercise;
@@ -25,6 +25,11 @@ export const KIND_WORDS: Readonly<Record<AnyExercise["kind"], string>> = {
   number: "number",
   function: "code",
 };
+
+/** What is to be done; in numbers that a seed draws. */
+export function taskText(exercise: AnyExercise, seed: number): string {
+  return exercise.kind === "number" ? drawOf(exercise, seed).text : exercise.text;
+}
 
 /** The usual mistakes that an exercise knows. */
 export function mistakesOf(exercise: AnyExercise): readonly NamedMistake[] {

@@ -1,8 +1,7 @@
 /** Every kind of things that can be picked, and what is asked of any of them. */
-
 import { formatSelection, type KindName, type Selection } from "../shared/selection";
 import type { Figure } from "../stages/figure";
-import type { Results, Tab } from "../stages/list";
+import { type Results, STAGE_FACTS, type Tab } from "../stages/list";
 import type { About, Kind, Question } from "./parts/kind";
 import { type Mark, shapeMarks, warpedMarks } from "./parts/marks";
 import type { Row } from "./parts/rows";
@@ -25,9 +24,8 @@ export function rowsOf(picked: Selection, about: About): Row[] {
 
 /** The neighbours of the selected thing, or, where nothing is selected, what a tab is about. */
 export function siblingsOf(picked: Selection | null, tab: Tab, about: About): readonly Selection[] {
-  const isAbout = ({ tabs }: Kind) => tabs?.includes(tab) === true;
-  const kind = picked === null ? Object.values(KINDS).find(isAbout) : KINDS[picked.kind];
-  return kind?.siblings(picked, about) ?? [];
+  const kind = picked?.kind ?? STAGE_FACTS[tab].about;
+  return kind === undefined ? [] : KINDS[kind].siblings(picked, about);
 }
 
 /** Where the selected thing stands among its neighbours; -1 where it does not. */

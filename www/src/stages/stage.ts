@@ -4,6 +4,7 @@
  */
 import type { Args, CallName, Result } from "../shared/calls";
 import type { ParamTree } from "../shared/paramTree";
+import type { KindName } from "../shared/selection";
 import type { StageName } from "../shared/stages";
 
 export interface Stage {
@@ -11,6 +12,8 @@ export interface Stage {
   shownBy?: StageName;
   /** Title of its tab, where the core's own is too long. */
   tabTitle?: string;
+  /** The kind of things that are gone through in its tab as long as nothing is picked. */
+  about?: KindName;
   /** The slots of the results that are its own, as they are before it has run. */
   nothing?: object;
   /** Asks the core for what it adds to the results, once it has run. */

@@ -6,7 +6,7 @@ import { counted } from "../../app/parts/counted";
 import { saveFile } from "../../app/parts/saveFile";
 import { TeachingHead } from "../../app/words/TeachingHead";
 import { Linked } from "../../app/words/Term";
-import { type AnyExercise, EXERCISES, KIND_WORDS, mistakesOf } from "../exercises";
+import { type AnyExercise, EXERCISES, KIND_WORDS, mistakesOf, taskText } from "../exercises";
 import type { FigureExercise } from "../figures/judgeFigure";
 import { LESSONS } from "../judging/about";
 import { drawOf } from "../judging/judgeNumber";
@@ -129,7 +129,7 @@ function Known({ exercise, seed, answer, onAsk, isChosen, onChoose }: KnownProps
       <details>
         <summary>Task, answer, mistakes</summary>
         <p>
-          <Linked text={kind === "number" ? drawOf(exercise, seed).text : exercise.text} />
+          <Linked text={taskText(exercise, seed)} />
         </p>
         {kind === "function" && <pre>{exercise.solution}</pre>}
         {kind === "number" && <NumberAnswer {...drawOf(exercise, seed)} exercise={exercise} />}

@@ -1,8 +1,7 @@
 /** An exercise sheet: one HTML file that prints, without answers or with them. */
-
 import { plain } from "../../app/words/linkedText";
 import { spelledOut } from "../../app/words/papers";
-import { type AnyExercise, mistakesOf } from "../exercises";
+import { type AnyExercise, mistakesOf, taskText } from "../exercises";
 import { LESSONS } from "../judging/about";
 import { drawOf } from "../judging/judgeNumber";
 import { quantityText } from "../judging/quantity";
@@ -64,17 +63,15 @@ ${sheet.answers === null ? "" : answerOf(exercise, sheet)}
 }
 
 function taskOf(exercise: AnyExercise, { seed, page, answers }: Sheet): string {
-  const blank = (kind: string) => (answers === null ? `<div class="blank${kind}"></div>` : "");
-  const address = `${page}?seed=${seed}#${exercise.name}`;
-  const link = `<a href="${escaped(address)}">${escaped(address)}</a>`;
-  switch (exercise.kind) {
-    case "number":
-      return `<p>${escaped(plain(drawOf(exercise, seed).text))}</p>\n${blank("")}`;
-    case "function":
-      return `<p>${escaped(plain(exercise.text))}</p>\n<pre>${escaped(exercise.starter)}</pre>\n${blank(" code")}`;
-    case "figure":
-      return `<p>${escaped(plain(exercise.text))}</p>\n<p>In the figure: ${link}</p>\n${blank("")}`;
-  }
+  const address = escaped(`${page}?seed=${seed}#${exercise.name}`);
+  const isCode = exercise.kind === "function";
+  const more = isCode
+    ? `<pre>${escaped(exercise.starter)}</pre>\n`
+    : exercise.kind === "figure"
+      ? `<p>In the figure: <a href="${address}">${address}</a></p>\n`
+      : "";
+  const blank = answers === null ? `<div class="blank${isCode ? " code" : ""}"></div>` : "";
+  return `<p>${escaped(plain(taskText(exercise, seed)))}</p>\n${more}${blank}`;
 }
 
 function answerOf(exercise: AnyExercise, { seed, answers }: Sheet): string {
@@ -86,14 +83,12 @@ function answerOf(exercise: AnyExercise, { seed, answers }: Sheet): string {
 }
 
 function answerText(exercise: AnyExercise, seed: number, answers: Sheet["answers"]): string {
-  switch (exercise.kind) {
-    case "number": {
-      const { value, solution } = drawOf(exercise, seed);
-      return `<p><strong>${quantityText({ value, unit: exercise.unit })}</strong> ${escaped(solution)}</p>`;
-    }
-    case "function":
-      return `<pre>${escaped(exercise.solution)}</pre>`;
-    case "figure":
-      return `<p><strong>${escaped(answers?.get(exercise.name) ?? "")}</strong> ${escaped(exercise.solution)}</p>`;
+  if (exercise.kind === "function") {
+    return `<pre>${escaped(exercise.solution)}</pre>`;
   }
+  const { value, solution } =
+    exercise.kind === "number" ? drawOf(exercise, seed) : { value: 0, solution: exercise.solution };
+  const answer =
+    exercise.kind === "number" ? quantityText({ value, unit: exercise.unit }) : answers?.get(exercise.name);
+  return `<p><strong>${escaped(answer ?? "")}</strong> ${escaped(solution)}</p>`;
 }

@@ -1,5 +1,4 @@
 /** What stands around an exercise: its title and paper, what is to be done, and what is said of an answer. */
-
 import type { ComponentChildren } from "preact";
 import { spelledOut } from "../../app/words/papers";
 import type { About, Verdict } from "../judging/about";
@@ -24,16 +23,12 @@ export function ExerciseFrame({ about: { title, source }, said, children }: Prop
 }
 
 export function Said({ verdict, right }: { verdict: Verdict; right: string }) {
-  switch (verdict.kind) {
-    case "right":
-      return <p class="said right">{right}</p>;
-    case "mistake":
-      return (
-        <p class="said wrong">
-          <strong>{verdict.name}</strong> {verdict.says}
-        </p>
-      );
-    default:
-      return <p class="said wrong">{verdict.says}</p>;
-  }
+  return verdict.kind === "right" ? (
+    <p class="said right">{right}</p>
+  ) : (
+    <p class="said wrong">
+      {verdict.kind === "mistake" && <strong>{verdict.name} </strong>}
+      {verdict.says}
+    </p>
+  );
 }

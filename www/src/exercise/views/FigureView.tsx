@@ -7,21 +7,11 @@ import { isDemo } from "../figures/truth";
 import type { Verdict } from "../judging/about";
 import { AnswerField } from "./AnswerField";
 import { ExerciseFrame, Said } from "./ExerciseFrame";
+import type { ViewProps } from "./view";
 
-interface Props {
-  exercise: FigureExercise;
-  /** Folder of the demo scene, where it is not beside the module. */
-  base: string | null;
-  theme: string | null;
-  written: string;
-  onWritten: (written: string) => void;
-  onVerdict: (verdict: Verdict) => void;
-  /** Makes `<ridgeline-figure>` known. */
-  needFigure: () => Promise<unknown>;
-}
-
-export function FigureView(props: Props) {
-  const { exercise, base, theme, written, onWritten, onVerdict, needFigure } = props;
+export function FigureView(props: ViewProps<FigureExercise>) {
+  const { exercise, base, theme, onWritten, onVerdict, needFigure } = props;
+  const written = props.written ?? "";
   const [figure, setFigure] = useState<Asked | null>(null);
   const [verdict, setVerdict] = useState<Verdict | null>(null);
   const [problem, setProblem] = useState<string | null>(null);

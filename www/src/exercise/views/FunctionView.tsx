@@ -7,18 +7,12 @@ import { judge } from "../judging/judge";
 import { randomFrom } from "../judging/random";
 import { type Run, run } from "../judging/run";
 import { ExerciseFrame, Said } from "./ExerciseFrame";
+import type { ViewProps } from "./view";
 
 /** Planted configurations, other ones at every check: who answers them by heart has not answered the next. */
 const CONFIGURATIONS = 24;
 
 type Result = { run: Run; verdict: Verdict | null };
-
-interface Props {
-  exercise: AnyFunction;
-  code: string;
-  onCode: (code: string) => void;
-  onVerdict: (verdict: Verdict | null) => void;
-}
 
 /** Runs and judges an answer. */
 async function check(exercise: AnyFunction, code: string, seed: number): Promise<Result> {
@@ -32,10 +26,11 @@ async function check(exercise: AnyFunction, code: string, seed: number): Promise
   return { run: ran, verdict: ran.kind === "answers" ? judge(exercise, planted, ran.answers) : null };
 }
 
-export function FunctionView({ exercise, code, onCode, onVerdict }: Props) {
+export function FunctionView({ exercise, written, onWritten, onVerdict }: ViewProps<AnyFunction>) {
   const [result, setResult] = useState<Result | null>(null);
   const [isRunning, setRunning] = useState(false);
   const { name, text, starter, solution } = exercise;
+  const code = written ?? starter;
   const begin = async () => {
     setRunning(true);
     const seed = crypto.getRandomValues(new Uint32Array(1))[0] ?? 1;
@@ -45,7 +40,7 @@ export function FunctionView({ exercise, code, onCode, onVerdict }: Props) {
     onVerdict(found.verdict);
   };
   const replace = (next: string) => {
-    onCode(next);
+    onWritten(next);
     setResult(null);
   };
   return (
@@ -60,7 +55,7 @@ export function FunctionView({ exercise, code, onCode, onVerdict }: Props) {
         autocomplete="off"
         rows={Math.min(24, Math.max(9, code.split("\n").length + 1))}
         value={code}
-        onInput={(event) => onCode(event.currentTarget.value)}
+        onInput={(event) => onWritten(event.currentTarget.value)}
         onKeyDown={(event) => {
           // The keys of slides are letters here.
           event.stopPropagation();

@@ -5,16 +5,7 @@ import type { Verdict } from "../judging/about";
 import { drawOf, judgeNumber, type NumberExercise } from "../judging/judgeNumber";
 import { AnswerField } from "./AnswerField";
 import { ExerciseFrame, Said } from "./ExerciseFrame";
-
-interface Props {
-  exercise: NumberExercise;
-  /** Draws the values. */
-  seed: number;
-  onSeed: (seed: number) => void;
-  written: string;
-  onWritten: (written: string) => void;
-  onVerdict: (verdict: Verdict) => void;
-}
+import type { ViewProps } from "./view";
 
 /** Seeds that a person can tell another one. */
 const MOST_SEEDS = 10_000;
@@ -23,7 +14,9 @@ export function anySeed(): number {
   return (crypto.getRandomValues(new Uint32Array(1))[0] ?? 1) % MOST_SEEDS;
 }
 
-export function NumberView({ exercise, seed, onSeed, written, onWritten, onVerdict }: Props) {
+export function NumberView(props: ViewProps<NumberExercise>) {
+  const { exercise, seed, onSeed, onWritten, onVerdict } = props;
+  const written = props.written ?? "";
   const [verdict, setVerdict] = useState<Verdict | null>(null);
   const draw = useMemo(() => drawOf(exercise, seed), [exercise, seed]);
   const check = () => {

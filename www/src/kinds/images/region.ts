@@ -8,7 +8,6 @@ import { allOf, type Row } from "../parts/rows";
 const MOVES: Record<string, string> = { dropped: "Break points dropped", merged: "Regions merged" };
 
 export default {
-  tabs: ["regions"],
   title: ({ view, index }, about) => `Region ${index} of ${viewName(about, view)}`,
   rows({ view, index }, { results }) {
     const found = results.regions[view];

@@ -11,7 +11,6 @@ import { allOf, degreesText, links, type Row } from "../parts/rows";
 import { linesShape } from "../parts/shapes";
 
 export default {
-  tabs: ["segments", "matches", "directions"],
   title: ({ view, index }, about) => `Segment ${index} of ${viewName(about, view)}`,
   rows({ view, index }, { results, detail: { story } }) {
     const [p, q] = endsIn(results.segments[view], index, SEGMENT_STRIDE);

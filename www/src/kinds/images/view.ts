@@ -4,7 +4,6 @@ import type { Kind } from "../parts/kind";
 import { numbered, worldText } from "../parts/rows";
 
 export default {
-  tabs: ["images"],
   title: ({ index }, about) => `View ${viewName(about, index)}`,
   rows({ index }, { scene }) {
     const view = scene?.views[index];

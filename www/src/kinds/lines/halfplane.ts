@@ -7,7 +7,6 @@ import { areas } from "../parts/shapes";
 import { allSides } from "./side";
 
 export default {
-  tabs: ["halfplanes"],
   title: ({ index }) => `Half-plane ${index}`,
   rows({ index }, about) {
     const { halfPlanes, grouping, facets } = about.results;

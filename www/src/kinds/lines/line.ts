@@ -18,7 +18,6 @@ import {
 import { lineEnds, linesShape } from "../parts/shapes";
 
 export default {
-  tabs: ["lines", "clusters"],
   title: ({ index }) => `3D line ${index}`,
   rows({ index }, about) {
     const [p0, p1] = lineEnds(index, about.results);

@@ -10,7 +10,6 @@ import { indicesOf, links, numbered, type Row } from "../parts/rows";
 import { lineEnds, linesShape } from "../parts/shapes";
 
 export default {
-  tabs: ["rectangles"],
   title: ({ index }, { results }) => `Pair of lines ${linesOfPair(index, results).join(" and ")}`,
   rows({ index }, { results: { rectangles, facets } }) {
     const pair = rectangles?.pairs[index];

@@ -1,9 +1,8 @@
 /** What the page knows of a kind of things that can be picked. Each kind is a file; what it leaves out is none. */
-
 import type { Side } from "../../shared/records";
 import type { KindName, Picked, Selection } from "../../shared/selection";
 import type { Figure } from "../../stages/figure";
-import type { Results, Tab } from "../../stages/list";
+import type { Results } from "../../stages/list";
 import type { Mark, Seen } from "./marks";
 import type { Rows } from "./rows";
 import type { Shape } from "./shapes";
@@ -17,8 +16,6 @@ export type Question =
   | { about: "side"; line: number; side: Side };
 
 export interface Kind<K extends KindName = KindName> {
-  /** The tabs in which these things are gone through as long as nothing is picked. */
-  tabs?: readonly Tab[];
   /** Its name over its numbers. */
   title(picked: Picked<K>, about: About): string;
   /** Its numbers with units, what made it and what it made. */

@@ -6,7 +6,6 @@ import { degreesText, groupsAndFacets, links, numbered, slopeText } from "../par
 import { areas } from "../parts/shapes";
 
 export default {
-  tabs: ["coplanar"],
   title: ({ index }) => `Coplanar set ${index}`,
   rows({ index }, { results }) {
     const set = results.coplanar?.sets[index];

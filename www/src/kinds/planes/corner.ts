@@ -8,7 +8,6 @@ import { groupsAndFacets, indicesOf, links, numbered } from "../parts/rows";
 import { areas, openLine } from "../parts/shapes";
 
 export default {
-  tabs: ["adjacency"],
   title: ({ index }) => `Corner ${index}`,
   rows({ index }, { results }) {
     const { adjacency } = results;

@@ -8,7 +8,6 @@ import { degreesText, groupsAndFacets, numbered, slopeText } from "../parts/rows
 import { areas } from "../parts/shapes";
 
 export default {
-  tabs: ["dense"],
   title: ({ index }) => `Dense plane ${index}`,
   rows({ index }, { results }) {
     const { dense } = results;

@@ -1,5 +1,4 @@
 /** A group of coplanar lines, half-planes and other proposals (B99 4.2). */
-
 import {
   coplanarSetsOf,
   cornerPlanesOf,
@@ -15,7 +14,6 @@ import { linesShape } from "../parts/shapes";
 import dense from "./dense";
 
 export default {
-  tabs: ["groups"],
   title: ({ index }) => `Group ${index}`,
   rows({ index }, { results }) {
     const group = results.grouping?.groups[index];

@@ -11,7 +11,6 @@ import { facetShape } from "../parts/shapes";
 import { proposalRows } from "../planes/group";
 
 export default {
-  tabs: ["facets", "model"],
   title: ({ index }) => `Facet ${index}`,
   rows({ index }, { results }) {
     const facet = results.facets?.[index];

@@ -9,7 +9,6 @@ import { links, numbered } from "../parts/rows";
 import { facetShape, type Shape } from "../parts/shapes";
 
 export default {
-  tabs: ["refinement"],
   title: ({ index }) => `Building ${index}, refined`,
   rows({ index }, { results }) {
     const found = results.refinement?.buildings[index];

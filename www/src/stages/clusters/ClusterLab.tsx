@@ -1,5 +1,4 @@
 /** W96 3.5: the plane across a main direction, its image lines and its clusters (figures 7 and 8). */
-
 import "../../app/view/figures/figures.css";
 import { useId } from "preact/hooks";
 import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "../../app/parts/charts";
@@ -9,7 +8,7 @@ import { PlaneChoice } from "../../app/view/figures/PlaneChoice";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import { category } from "../../shared/palette";
 import type { ClusterTrace, Directions, Vec2 } from "../../shared/records";
-import type { Selection } from "../../shared/selection";
+import { pickedIndex, type Selection } from "../../shared/selection";
 import type { Figure } from "../figure";
 import type { Results } from "../list";
 
@@ -204,12 +203,11 @@ function placeOfSelection(
   plane: number,
   trace: ClusterTrace,
 ): Vec2 | null {
-  switch (picked?.kind) {
-    case "line":
-      return isAlong(lines, picked.index, trace) ? placeOf(lines, picked.index, trace) : null;
-    case "cluster":
-      return picked.plane === plane ? (trace.refused[picked.index]?.[0] ?? null) : null;
-    default:
-      return null;
+  const line = pickedIndex(picked, "line");
+  if (line >= 0 && isAlong(lines, line, trace)) {
+    return placeOf(lines, line, trace);
   }
+  return picked?.kind === "cluster" && picked.plane === plane
+    ? (trace.refused[picked.index]?.[0] ?? null)
+    : null;
 }

@@ -3,6 +3,7 @@ import type { Facet, FacetTrace } from "../../shared/records";
 import type { ResultSource, Stage } from "../stage";
 
 export const facets = {
+  about: "facet",
   nothing: {
     facets: null as Facet[] | null,
     /** The parameters that the facets were found with. */

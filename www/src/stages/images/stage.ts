@@ -1,4 +1,4 @@
 /** The photographs, before any stage. */
 import type { Stage } from "../stage";
 
-export const images = {} satisfies Stage;
+export const images = { about: "view" } satisfies Stage;

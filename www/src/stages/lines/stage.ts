@@ -2,6 +2,7 @@ import type { LineRecord } from "../../shared/records";
 import { perView, type ResultSource, type Stage } from "../stage";
 
 export const lines = {
+  about: "line",
   nothing: {
     lines: null as Float64Array | null,
     records: [] as LineRecord[],

@@ -5,6 +5,7 @@ import type { Stage } from "../stage";
 type Glb = Uint8Array<ArrayBuffer>;
 
 export const model = {
+  about: "facet",
   nothing: {
     glb: null as Glb | null,
     /** The models of the tiles that are done, as long as they are not joined. */

@@ -1,4 +1,5 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
+import { pickedIndex } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { axesOf, buttonShape, Chart, Fit, type Frame } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
@@ -47,19 +48,18 @@ export function RefinementLab({ figure }: { figure: Figure }) {
 /** The building of the selection, or the one with the most relations. */
 function shownBuilding({ results, selection: picked }: Figure): number {
   const { buildings = [] } = results.refinement ?? {};
-  switch (picked?.kind) {
-    case "refinement":
-      return Math.min(picked.index, buildings.length - 1);
-    case "relation":
-      return Math.min(picked.building, buildings.length - 1);
-    case "facet":
-      return buildingOfFacet(picked.index, results) ?? 0;
-    default:
-      return buildings.reduce(
+  const own =
+    picked?.kind === "facet"
+      ? (buildingOfFacet(picked.index, results) ?? 0)
+      : picked?.kind === "relation"
+        ? picked.building
+        : pickedIndex(picked, "refinement");
+  return own >= 0
+    ? Math.min(own, buildings.length - 1)
+    : buildings.reduce(
         (best, { relations }, i) => (relations.length > (buildings[best]?.relations.length ?? 0) ? i : best),
         0,
       );
-  }
 }
 
 interface RelationsProps {

@@ -4,6 +4,7 @@ import { fetchLines } from "../lines/stage";
 import type { Stage } from "../stage";
 
 export const refinement = {
+  about: "refinement",
   nothing: { refinement: null as Refinement | null },
   fetch: async (from) => ({
     ...(await fetchFacets(from)),

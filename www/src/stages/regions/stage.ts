@@ -2,6 +2,7 @@ import type { Segmentation } from "../../shared/records";
 import { perView, type Stage } from "../stage";
 
 export const regions = {
+  about: "region",
   nothing: { regions: [] as Segmentation[] },
   fetch: async (from) => ({
     segments: await perView(from, "segments"),

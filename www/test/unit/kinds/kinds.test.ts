@@ -3,6 +3,7 @@ import { KINDS } from "../../../src/kinds/kinds";
 import { formatSelection, KIND_NAMES, parseSelection, type Selection } from "../../../src/shared/selection";
 import { METHODS } from "../../../src/shared/stages";
 import { tabsOf } from "../../../src/stages/catalogue";
+import { STAGE_FACTS } from "../../../src/stages/list";
 
 /** One of each kind, with the fields that its text names. */
 const ONES: readonly Selection[] = [
@@ -98,7 +99,8 @@ describe("the kinds of things", () => {
   });
 
   it("are gone through in the tabs, one kind in each", () => {
-    const tabs = Object.values(KINDS).flatMap((kind) => kind.tabs ?? []);
-    expect([...tabs].sort()).toEqual([...new Set(METHODS.flatMap(tabsOf))].sort());
+    expect(
+      [...new Set(METHODS.flatMap(tabsOf))].filter((tab) => STAGE_FACTS[tab].about === undefined),
+    ).toEqual([]);
   });
 });
