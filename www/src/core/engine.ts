@@ -2,7 +2,7 @@
 import wasmUrl from "../pkg/ridgeline_bg.wasm?url";
 import { type CoreSource, WorkerEngine } from "./workerEngine";
 
-export { EngineError, isFatal, PendingCalls } from "./workerEngine";
+export { EngineError, isFatal, WorkerEnd } from "./workerEngine";
 export { OF_SITE };
 
 /** Changes with every other core that is built: what one found, another may not find. */

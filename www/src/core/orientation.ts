@@ -5,6 +5,7 @@
  */
 import orientUrl from "../pkg-orient/orientation_bg.wasm?url";
 import type { Bytes, InputFile } from "../shared/calls";
+import type { Outcome } from "../shared/messages";
 import type {
   OrientationReport,
   OrientCallName,
@@ -16,7 +17,7 @@ import type {
   PairSummary,
   PhotoFeatures,
 } from "../shared/orientation";
-import { EngineError, PendingCalls } from "./engine";
+import { EngineError, WorkerEnd } from "./engine";
 
 type Args<K extends OrientCallName> = Parameters<OrientCalls[K]>;
 type Result<K extends OrientCallName> = Awaited<ReturnType<OrientCalls[K]>>;
@@ -35,51 +36,25 @@ export interface OrientEvents {
 
 /** A worker's other end: calls as promises. */
 class OrientWorker {
-  readonly #worker: Worker;
-  readonly #pending = new PendingCalls();
   onProgress: (fraction: number) => void = () => undefined;
   onBlock: (block: OrientedBlock) => void = () => undefined;
-
-  constructor() {
-    this.#worker = new Worker(new URL("../worker/orientation.ts", import.meta.url), { type: "module" });
-    this.#worker.onmessage = (event: MessageEvent<OrientReply>) => this.#receive(event.data);
-    this.#worker.onerror = (event) => {
-      event.preventDefault();
-      this.close(new EngineError(event.message || "the worker could not be started", "crash"));
-    };
-  }
+  readonly #end = new WorkerEnd<OrientRequest, Exclude<OrientReply, Outcome>>(
+    new Worker(new URL("../worker/orientation.ts", import.meta.url), { type: "module" }),
+    (told) => (told.type === "progress" ? this.onProgress(told.fraction) : this.onBlock(told.block)),
+    () => undefined,
+  );
 
   open(options: OrientOptions): Promise<void> {
     const wasmUrl = new URL(orientUrl, document.baseURI).href;
-    return this.#send((id) => ({ type: "open", id, wasmUrl, options }));
+    return this.#end.ask({ type: "open", wasmUrl, options });
   }
 
   call<K extends OrientCallName>(name: K, ...args: Args<K>): Promise<Result<K>> {
-    return this.#send((id) => ({ type: "call", id, name, args }));
+    return this.#end.ask({ type: "call", name, args });
   }
 
-  #send<T>(request: (id: number) => OrientRequest): Promise<T> {
-    return this.#pending.ask((id) => this.#worker.postMessage(request(id)));
-  }
-
-  close(reason: EngineError): void {
-    this.#worker.terminate();
-    this.#pending.rejectAll(reason);
-  }
-
-  #receive(reply: OrientReply): void {
-    if (reply.type === "progress") {
-      this.onProgress(reply.fraction);
-      return;
-    }
-    if (reply.type === "block") {
-      this.onBlock(reply.block);
-      return;
-    }
-    const fatal = this.#pending.settle(reply);
-    if (fatal !== null) {
-      this.close(fatal);
-    }
+  close(): void {
+    this.#end.end(new EngineError("Cancelled.", "cancelled"));
   }
 }
 
@@ -128,7 +103,7 @@ export class OrientationRun {
   close(): void {
     this.#isClosed = true;
     for (const worker of this.#workers.splice(0)) {
-      worker.close(new EngineError("Cancelled.", "cancelled"));
+      worker.close();
     }
   }
 
@@ -180,7 +155,7 @@ export class OrientationRun {
 
   #endOthers(): void {
     for (const worker of this.#workers.splice(1)) {
-      worker.close(new EngineError("Cancelled.", "cancelled"));
+      worker.close();
     }
   }
 }

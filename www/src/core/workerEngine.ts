@@ -3,7 +3,7 @@
  * then opens it again and replays its inputs.
  */
 import type { Args, CallName, Result } from "../shared/calls";
-import type { FailureKind, Outcome, Reply, Request } from "../shared/messages";
+import type { FailureKind, Outcome, Request, Told } from "../shared/messages";
 import type { AgreementReport } from "../shared/records";
 
 /** A call that the worker rejected, or that was cut short. */
@@ -37,45 +37,75 @@ interface Waiting {
   reject: (error: EngineError) => void;
 }
 
-/** The requests of a worker that wait for their answers. */
-export class PendingCalls {
+/** A worker's other end: requests as promises of their answers, until it ends. */
+export class WorkerEnd<Made extends { id: number }, Told extends { type: string }> {
+  readonly #worker: Worker;
   readonly #waiting = new Map<number, Waiting>();
+  readonly #onEnd: (reason: EngineError) => void;
   #lastId = 0;
 
-  get size(): number {
+  /**
+   * @param onTold hears what is no answer
+   * @param onEnd hears that the worker has ended of itself
+   */
+  constructor(worker: Worker, onTold: (told: Told) => void, onEnd: (reason: EngineError) => void) {
+    this.#worker = worker;
+    this.#onEnd = onEnd;
+    worker.onmessage = ({ data }: MessageEvent<Outcome | Told>) => {
+      if ("id" in data) {
+        this.#settle(data);
+      } else {
+        onTold(data);
+      }
+    };
+    worker.onerror = (event) => {
+      event.preventDefault();
+      this.#fail(new EngineError(event.message || "the worker could not be started", "crash"));
+    };
+  }
+
+  /** How many requests wait for their answers. */
+  get waiting(): number {
     return this.#waiting.size;
   }
 
-  /** The promise of the answer to the request that `send` sends with its number. */
-  ask<T>(send: (id: number) => void): Promise<T> {
+  /** What `transfer` names moves to the worker instead of being copied. */
+  ask<T>(request: Unnumbered<Made>, transfer: readonly Transferable[] = []): Promise<T> {
     this.#lastId += 1;
     const id = this.#lastId;
     return new Promise((resolve, reject) => {
       this.#waiting.set(id, { resolve, reject });
-      send(id);
+      this.#worker.postMessage({ ...request, id }, [...transfer]);
     });
   }
 
-  /** Keeps the promise of an answer; returns the error after which the worker is of no more use. */
-  settle(outcome: Outcome): EngineError | null {
-    const waiting = this.#waiting.get(outcome.id);
-    this.#waiting.delete(outcome.id);
-    if (outcome.type === "done") {
-      waiting?.resolve(outcome.result as never);
-      return null;
-    }
-    const error = new EngineError(outcome.message, outcome.kind, outcome.orientationCheck);
-    waiting?.reject(error);
-    return isFatal(outcome.kind) ? error : null;
-  }
-
-  /** All that wait fail with `reason`. */
-  rejectAll(reason: EngineError): void {
+  /** Ends the worker at once, whatever it is doing; all requests that wait fail with `reason`. */
+  end(reason: EngineError): void {
+    this.#worker.terminate();
     const waiting = [...this.#waiting.values()];
     this.#waiting.clear();
     for (const { reject } of waiting) {
       reject(reason);
     }
+  }
+
+  #settle(outcome: Outcome): void {
+    const waiting = this.#waiting.get(outcome.id);
+    this.#waiting.delete(outcome.id);
+    if (outcome.type === "done") {
+      waiting?.resolve(outcome.result as never);
+      return;
+    }
+    const error = new EngineError(outcome.message, outcome.kind, outcome.orientationCheck);
+    waiting?.reject(error);
+    if (isFatal(outcome.kind)) {
+      this.#fail(error);
+    }
+  }
+
+  #fail(reason: EngineError): void {
+    this.end(reason);
+    this.#onEnd(reason);
   }
 }
 
@@ -88,8 +118,7 @@ export interface CoreSource {
 
 export class WorkerEngine {
   readonly #source: CoreSource;
-  #worker: Worker | undefined;
-  readonly #pending = new PendingCalls();
+  #worker: WorkerEnd<Request, Told> | undefined;
   readonly #onProgress: (stage: string, fraction: number) => void;
   readonly #mayAsk: () => boolean;
 
@@ -106,7 +135,7 @@ export class WorkerEngine {
 
   /** Whether requests are waiting for their answers. */
   get isWorking(): boolean {
-    return this.#pending.size > 0;
+    return (this.#worker?.waiting ?? 0) > 0;
   }
 
   /** Whether a worker with a core exists, or is being made. */
@@ -116,12 +145,17 @@ export class WorkerEngine {
 
   /** Starts a worker and compiles the core. */
   open(): Promise<void> {
-    this.#worker = this.#source.startWorker();
-    this.#worker.onmessage = (event: MessageEvent<Reply>) => this.#receive(event.data);
-    this.#worker.onerror = (event) => {
-      event.preventDefault();
-      this.close(new EngineError(event.message || "the worker could not be started", "crash"));
-    };
+    const end = new WorkerEnd<Request, Told>(
+      this.#source.startWorker(),
+      ({ stage, fraction }) => this.#onProgress(stage, fraction),
+      () => {
+        // Another one may have been opened since.
+        if (this.#worker === end) {
+          this.#worker = undefined;
+        }
+      },
+    );
+    this.#worker = end;
     return this.#send({ type: "open", wasmUrl: this.#source.wasmUrl }, []);
   }
 
@@ -143,24 +177,12 @@ export class WorkerEngine {
     if (worker === undefined || !this.#mayAsk()) {
       return Promise.reject(new EngineError("No worker is running.", "cancelled"));
     }
-    return this.#pending.ask((id) => worker.postMessage({ ...request, id }, [...transfer]));
+    return worker.ask(request, transfer);
   }
 
   /** Ends the worker at once, whatever it is doing; every open call fails with `reason`. */
   close(reason = new EngineError("Cancelled.", "cancelled")): void {
-    this.#worker?.terminate();
+    this.#worker?.end(reason);
     this.#worker = undefined;
-    this.#pending.rejectAll(reason);
-  }
-
-  #receive(reply: Reply): void {
-    if (reply.type === "progress") {
-      this.#onProgress(reply.stage, reply.fraction);
-      return;
-    }
-    const fatal = this.#pending.settle(reply);
-    if (fatal !== null) {
-      this.close(fatal);
-    }
   }
 }

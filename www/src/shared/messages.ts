@@ -25,5 +25,12 @@ export type Outcome =
   | { type: "done"; id: number; result: unknown }
   | ({ type: "failed"; id: number } & Failure);
 
+/** What the worker tells while it works. */
+export interface Told {
+  type: "progress";
+  stage: string;
+  fraction: number;
+}
+
 /** Worker to page. */
-export type Reply = Outcome | { type: "progress"; stage: string; fraction: number };
+export type Reply = Outcome | Told;

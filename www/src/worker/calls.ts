@@ -1,17 +1,10 @@
 /** Answers one call with the core's Session: convert, call, convert. No geometry, no state but the session. */
-import type { CallName, WorkerCalls } from "../shared/calls";
+import type { WorkerCalls } from "../shared/calls";
 import { asTree } from "../shared/paramTree";
 import type { GroundPicture, Params, Picture, WarpedViews } from "../shared/records";
+import { throttled } from "./answering";
 import type { CoreSession, FieldsOf } from "./coreSession";
 import { ProjectFiles } from "./projectFiles";
-
-export interface Answer {
-  result: unknown;
-  transfer: Transferable[];
-}
-
-/** Progress is a message at most every so often: the page cannot draw more. */
-const PROGRESS_INTERVAL_MS = 40;
 
 type OnProgress = (stage: string, fraction: number) => void;
 
@@ -22,6 +15,7 @@ export function workerCalls(
   onProgress: OnProgress,
 ): WorkerCalls {
   const files = new ProjectFiles(session);
+  const progressOf = (stage: string) => throttled((fraction) => onProgress(stage, fraction));
   return {
     setFiles: (all) => files.replace(all),
     inspect: (options) =>
@@ -44,19 +38,18 @@ export function workerCalls(
     },
     warped: (line, left, theta) => pictureOf<WarpedViews>(session.warped(line, left, theta)),
     ground: () => pictureOf<GroundPicture>(session.ground()),
-    runStage: (stage) => session.runStage(stage, throttled(stage, onProgress)),
-    adjustOnce: () => session.adjustOnce(throttled("adjustment", onProgress)),
-    runShard: (stage, map, index, of) =>
-      session.runShard(stage, map, index, of, throttled(stage, onProgress)),
+    runStage: (stage) => session.runStage(stage, progressOf(stage)),
+    adjustOnce: () => session.adjustOnce(progressOf("adjustment")),
+    runShard: (stage, map, index, of) => session.runShard(stage, map, index, of, progressOf(stage)),
     runTile: (stage, index, of) => {
-      const onTileProgress = throttled(stage, onProgress);
+      const onTileProgress = progressOf(stage);
       return files.withFilled(
         [() => session.groundFilesOfTile(index), () => session.viewFilesOfTile(index)],
         () => session.runTile(index, (fraction) => onTileProgress((index + fraction) / of)),
       );
     },
     lookAt: (stage, index, of) => {
-      const onLookProgress = throttled(stage, onProgress);
+      const onLookProgress = progressOf(stage);
       return files.withFilled(
         [() => session.groundFilesOfLook(index), () => session.viewFilesOfLook(index)],
         () => session.lookAt(index, (fraction) => onLookProgress((index + fraction) / of)),
@@ -74,49 +67,4 @@ function pictureOf<T>(picture: FieldsOf<Picture> | undefined) {
   return picture === undefined
     ? null
     : { about: picture.about as T, rgba: picture.rgba as Uint8ClampedArray<ArrayBuffer> };
-}
-
-/** Answers a call by its name, with what moves to the page instead of being copied. */
-export async function answer(
-  session: CoreSession,
-  own: WorkerCalls,
-  name: CallName,
-  args: readonly unknown[],
-): Promise<Answer> {
-  const target: object = name in own ? own : session;
-  const method: unknown = Reflect.get(target, name);
-  if (typeof method !== "function") {
-    throw new Error(`There is no call '${name}'.`);
-  }
-  const result: unknown = await Reflect.apply(method, target, args);
-  return { result, transfer: transferOf(result) };
-}
-
-/** Arrays that the core hands out are copies of its memory, so their buffers may move. */
-function transferOf(result: unknown): Transferable[] {
-  if (ArrayBuffer.isView(result)) {
-    return [result.buffer as ArrayBuffer];
-  }
-  if (typeof ImageBitmap !== "undefined" && result instanceof ImageBitmap) {
-    return [result];
-  }
-  if (typeof result === "object" && result !== null && "rgba" in result) {
-    return transferOf(result.rgba);
-  }
-  if (typeof result === "object" && result !== null && "glb" in result) {
-    return transferOf(result.glb);
-  }
-  return [];
-}
-
-/** Passes a stage's progress on, but not more often than the page can draw it. */
-function throttled(stage: string, onProgress: OnProgress): (fraction: number) => void {
-  let last = 0;
-  return (fraction) => {
-    const now = performance.now();
-    if (now - last >= PROGRESS_INTERVAL_MS || fraction >= 1) {
-      last = now;
-      onProgress(stage, fraction);
-    }
-  };
 }

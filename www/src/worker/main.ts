@@ -3,7 +3,8 @@
 import init, { Session } from "../pkg/ridgeline.js";
 import type { WorkerCalls } from "../shared/calls";
 import type { Reply, Request } from "../shared/messages";
-import { type Answer, answer, workerCalls } from "./calls";
+import { type Answer, answer } from "./answering";
+import { workerCalls } from "./calls";
 import type { CoreSession } from "./coreSession";
 import { serve } from "./serve";
 
@@ -23,7 +24,7 @@ async function perform(request: Request): Promise<Answer> {
   if (core === undefined) {
     throw new Error("The reconstruction core is not ready. Reload the page.");
   }
-  return answer(core.session, core.own, request.name, request.args);
+  return answer(core.own, core.session, request);
 }
 
 function post(reply: Reply, transfer: Transferable[] = []): void {

@@ -2,13 +2,14 @@
 /// <reference lib="webworker" />
 import init, { Orienter } from "../pkg-orient/orientation.js";
 import type { OrientCalls, OrientedBlock, OrientReply, OrientRequest } from "../shared/orientation";
-import type { Answer } from "./calls";
+import { type Answer, answer, throttled, transferOf } from "./answering";
 import { readBlob } from "./projectFiles";
 import { serve } from "./serve";
 
 declare const self: DedicatedWorkerGlobalScope;
 
 let orienter: Orienter | undefined;
+const reached = throttled((fraction) => post({ type: "progress", fraction }));
 serve<OrientRequest>(perform, post);
 
 async function perform(request: OrientRequest): Promise<Answer> {
@@ -20,14 +21,7 @@ async function perform(request: OrientRequest): Promise<Answer> {
   if (orienter === undefined) {
     throw new Error("The core is not ready. Reload the page.");
   }
-  const own = callsOf(orienter);
-  const target: object = request.name in own ? own : orienter;
-  const method: unknown = Reflect.get(target, request.name);
-  if (typeof method !== "function") {
-    throw new Error(`There is no call '${request.name}'.`);
-  }
-  const result: unknown = await Reflect.apply(method, target, request.args);
-  return { result, transfer: buffersOf(result) };
+  return answer(callsOf(orienter), orienter, request);
 }
 
 type Own = Pick<
@@ -50,7 +44,7 @@ function callsOf(core: Orienter): Own {
     orient: () =>
       core.orient(reached, (views, points, colours) => {
         const block = { views, points, colours };
-        post({ type: "block", block }, buffersOf(block));
+        post({ type: "block", block }, transferOf(block));
       }),
     block: () => ({
       views: core.views(),
@@ -58,29 +52,6 @@ function callsOf(core: Orienter): Own {
       colours: core.colours() as OrientedBlock["colours"],
     }),
   };
-}
-
-/** Progress is a message at most every so often: the page cannot draw more. */
-const PROGRESS_INTERVAL_MS = 40;
-let last = 0;
-
-function reached(fraction: number): void {
-  const now = performance.now();
-  if (now - last >= PROGRESS_INTERVAL_MS) {
-    last = now;
-    post({ type: "progress", fraction });
-  }
-}
-
-/** Arrays that the core hands out are copies of its memory, so their buffers may move. */
-function buffersOf(result: unknown): Transferable[] {
-  if (ArrayBuffer.isView(result)) {
-    return [result.buffer as ArrayBuffer];
-  }
-  if (typeof result === "object" && result !== null && "points" in result && "colours" in result) {
-    return [...buffersOf(result.points), ...buffersOf(result.colours)];
-  }
-  return [];
 }
 
 function post(message: OrientReply, transfer: Transferable[] = []): void {

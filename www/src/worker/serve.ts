@@ -1,6 +1,6 @@
 /** What every worker does with its requests: one after the other, each with one reply. */
 import type { Outcome } from "../shared/messages";
-import type { Answer } from "./calls";
+import type { Answer } from "./answering";
 import { failureOf } from "./failures";
 
 /** Answers the requests of the page with what `perform` makes of them, by `post`. */

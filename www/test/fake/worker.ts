@@ -4,7 +4,8 @@
  */
 import type { CallName } from "../../src/shared/calls";
 import type { Reply, Request } from "../../src/shared/messages";
-import { answer, workerCalls } from "../../src/worker/calls";
+import { answer } from "../../src/worker/answering";
+import { workerCalls } from "../../src/worker/calls";
 import { failureOf } from "../../src/worker/failures";
 import { Session } from "./ridgeline";
 
@@ -168,7 +169,7 @@ export class FakeWorker {
         ...workerCalls(this.#session, Session.defaultParams, () => {}),
         image: async () => ({ width: 4, height: 4, close: () => {} }) as ImageBitmap,
       };
-      const { result } = await answer(this.#session, own, request.name, request.args);
+      const { result } = await answer(own, this.#session, request);
       return { type: "done", id, result };
     } catch (error) {
       return { type: "failed", id, ...failureOf(error, null) };

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { CallName } from "../../../src/shared/calls";
-import { type Answer, answer, workerCalls } from "../../../src/worker/calls";
+import { type Answer, answer } from "../../../src/worker/answering";
+import { workerCalls } from "../../../src/worker/calls";
 import { Session } from "../../fake/ridgeline";
 
 /** A worker's answers, and the progress that it reports. */
@@ -8,7 +9,7 @@ function worker() {
   const session = new Session();
   const fractions: number[] = [];
   const own = workerCalls(session, Session.defaultParams, (_, fraction) => fractions.push(fraction));
-  const call = (name: CallName, ...args: unknown[]): Promise<Answer> => answer(session, own, name, args);
+  const call = (name: CallName, ...args: unknown[]): Promise<Answer> => answer(own, session, { name, args });
   return { call, fractions };
 }
 
