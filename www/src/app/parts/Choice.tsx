@@ -34,3 +34,26 @@ export function Choice<T extends string | number | boolean>({ legend, choices, .
     </fieldset>
   );
 }
+
+/** One of many, in a list that opens. */
+export function ListChoice(props: {
+  title: string;
+  /** Each with what tells it from the others. */
+  names: readonly string[];
+  shown: number;
+  onShow: (i: number) => void;
+}) {
+  const { title, names, shown, onShow } = props;
+  return (
+    <label class="pair-choice">
+      {title}
+      <select value={shown} onChange={(event) => onShow(Number(event.currentTarget.value))}>
+        {names.map((name, i) => (
+          <option key={i.toString()} value={i}>
+            {name}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}

@@ -2,7 +2,7 @@
 import { DEGREE } from "../../shared/linear";
 import type { Side, SideTrace } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
-import type { Asked, FigureExercise, Outcome } from "./judgeFigure";
+import { type Asked, type FigureExercise, mistakeAmong, type Outcome } from "./judgeFigure";
 import { edgeAlong, faceBeside, lineOf } from "./truth";
 
 /** What B99 4.4 states of a well textured face, degrees. */
@@ -57,16 +57,13 @@ export const turnToRoof: FigureExercise = {
     if (isNear(truth)) {
       return "right";
     }
-    if (isNear(0)) {
-      return { mistake: "level" };
-    }
-    if (isNear(-truth)) {
-      return { mistake: "wrong sign" };
-    }
-    if (isNear(Math.sign(truth) * (90 - Math.abs(truth)))) {
-      return { mistake: "from the vertical" };
-    }
-    return { wrong: `${given.toFixed(1)}° is ${given > truth ? "too high" : "too low"}.` };
+    return (
+      mistakeAmong({
+        level: isNear(0),
+        "wrong sign": isNear(-truth),
+        "from the vertical": isNear(Math.sign(truth) * (90 - Math.abs(truth))),
+      }) ?? { wrong: `${given.toFixed(1)}° is ${given > truth ? "too high" : "too low"}.` }
+    );
   },
   answer: async ({ shown }) => {
     const truth = thetaOfRoof(shown) ?? 0;
@@ -138,22 +135,18 @@ export const halfOfPeak: FigureExercise = {
     }
     const { theta: peak, sim, least } = peakOf(side);
     const here = simAt(side, theta);
-    if (Math.abs(theta - above) <= TOLERANCE_DEG * DEGREE) {
+    const isNear = (angle: number) => Math.abs(theta - angle) <= TOLERANCE_DEG * DEGREE;
+    if (isNear(above)) {
       return "right";
     }
-    if (Math.abs(theta - peak) <= TOLERANCE_DEG * DEGREE) {
-      return { mistake: "at the peak" };
-    }
-    if (theta < peak && Math.abs(here - sim / 2) <= 0.08 * sim) {
-      return { mistake: "below the peak" };
-    }
-    if (here <= least + 0.05 * sim) {
-      return { mistake: "at the bottom" };
-    }
-    if (Math.abs(theta - peak / 2) <= TOLERANCE_DEG * DEGREE) {
-      return { mistake: "half of the angle" };
-    }
-    return { wrong: `Here Sim(θ) is ${here.toFixed(2)}, and half of its peak is ${(sim / 2).toFixed(2)}.` };
+    return (
+      mistakeAmong({
+        "at the peak": isNear(peak),
+        "below the peak": theta < peak && Math.abs(here - sim / 2) <= 0.08 * sim,
+        "at the bottom": here <= least + 0.05 * sim,
+        "half of the angle": isNear(peak / 2),
+      }) ?? { wrong: `Here Sim(θ) is ${here.toFixed(2)}, and half of its peak is ${(sim / 2).toFixed(2)}.` }
+    );
   },
   answer: async ({ shown }) => {
     const { side } = shown.detail;

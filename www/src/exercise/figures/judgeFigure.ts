@@ -45,6 +45,12 @@ export interface FigureExercise extends About {
   mistakes: Readonly<Record<string, string>>;
 }
 
+/** The first of some mistakes that was made; null where none was. */
+export function mistakeAmong(made: Readonly<Record<string, boolean>>): Outcome | null {
+  const mistake = Object.keys(made).find((name) => made[name]);
+  return mistake === undefined ? null : { mistake };
+}
+
 export async function judgeFigure(exercise: FigureExercise, of: Asked, given: string): Promise<Verdict> {
   const outcome = await exercise.judge(of, given);
   if (outcome === "right") {

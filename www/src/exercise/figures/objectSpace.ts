@@ -3,7 +3,7 @@ import { boundsOf, DEGREE, isInside } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import { inUnit, kindOf, readQuantity } from "../judging/quantity";
-import type { FigureExercise, Outcome } from "./judgeFigure";
+import { type FigureExercise, mistakeAmong, type Outcome } from "./judgeFigure";
 import { EDGES, FACES, faceOver, imageIn, type Place, type RoofFace } from "./truth";
 
 const TOLERANCE_DEG = 2;
@@ -63,20 +63,17 @@ export const ridgeDirection: FigureExercise = {
     if (kindOf(read.quantity.unit) !== "angle") {
       return { form: "An azimuth is an angle: degrees." };
     }
-    const angle = inUnit(read.quantity, "deg");
-    if (turned(angle, truth) <= TOLERANCE_DEG) {
+    const isNear = (angle: number) => turned(inUnit(read.quantity, "deg"), angle) <= TOLERANCE_DEG;
+    if (isNear(truth)) {
       return "right";
     }
-    if (turned(angle, truth + 90) <= TOLERANCE_DEG) {
-      return { mistake: "the perpendicular direction" };
-    }
-    if (turned(angle, 90 - truth) <= TOLERANCE_DEG) {
-      return { mistake: "from north" };
-    }
-    if (turned(angle, -truth) <= TOLERANCE_DEG) {
-      return { mistake: "wrong sense" };
-    }
-    return { wrong: "There is no peak of the histogram there." };
+    return (
+      mistakeAmong({
+        "the perpendicular direction": isNear(truth + 90),
+        "from north": isNear(90 - truth),
+        "wrong sense": isNear(-truth),
+      }) ?? { wrong: "There is no peak of the histogram there." }
+    );
   },
   answer: async ({ shown }) => {
     const truth = ridgeIn(shown, shown.plane) ?? 0;
@@ -144,16 +141,15 @@ const doMeet = (a: Box, b: Box) => a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] 
 /** What is to be said of a region. */
 export function outcomeOfRegion(covered: readonly Covered[]): Outcome {
   const [most] = covered;
-  if (most === undefined || covered.reduce((sum, { ofRegion }) => sum + ofRegion, 0) < 0.4) {
-    return { mistake: "no roof" };
-  }
-  if (covered.filter(({ ofFace }) => ofFace > 0.5).length > 1) {
-    return { mistake: "several faces" };
-  }
-  if (most.ofRegion < 0.75) {
-    return { mistake: "beyond the face" };
-  }
-  return most.ofFace < 0.75 ? { mistake: "a part of a face" } : "right";
+  const { ofRegion = 0, ofFace = 0 } = most ?? {};
+  return (
+    mistakeAmong({
+      "no roof": covered.reduce((sum, one) => sum + one.ofRegion, 0) < 0.4,
+      "several faces": covered.filter((one) => one.ofFace > 0.5).length > 1,
+      "beyond the face": ofRegion < 0.75,
+      "a part of a face": ofFace < 0.75,
+    }) ?? "right"
+  );
 }
 
 export const wholeFace: FigureExercise = {

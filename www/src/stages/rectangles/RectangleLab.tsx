@@ -1,4 +1,5 @@
 /** W96 3.6: the window of a plane between parallel lines, and the histogram of positions (figures 10 and 11). */
+import { ListChoice } from "../../app/parts/Choice";
 import "../../app/view/figures/figures.css";
 import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
@@ -20,26 +21,15 @@ export function RectangleLab({ figure }: { figure: Figure }) {
     found.chosen.some((k) => samePair(found.candidates[k]?.lines, found.pairs[index]?.lines));
   return (
     <SplitLab figure={figure} testid="rectangle-lab" unpicked={{ kind: "pair", index: shown }}>
-      <label class="pair-choice">
-        Pair of lines
-        <select
-          value={shown}
-          onChange={(event) => {
-            figure.act.select({ kind: "pair", index: Number(event.currentTarget.value) });
-          }}
-        >
-          {found.pairs.map((one, i) => (
-            <option key={one.lines.join()} value={i}>
-              {one.lines.join(" and ")}
-              {isChosen(i)
-                ? " · selected"
-                : one.rejection === null
-                  ? " · candidate"
-                  : ` · ${PAIR_WORDS[one.rejection]}`}
-            </option>
-          ))}
-        </select>
-      </label>
+      <ListChoice
+        title="Pair of lines"
+        names={found.pairs.map(({ lines, rejection }, i) => {
+          const outcome = rejection === null ? "candidate" : PAIR_WORDS[rejection];
+          return `${lines.join(" and ")} · ${isChosen(i) ? "selected" : outcome}`;
+        })}
+        shown={shown}
+        onShow={(index) => figure.act.select({ kind: "pair", index })}
+      />
       <Fit>{(frame) => <PlaneWindow outer={frame} pair={pair} />}</Fit>
     </SplitLab>
   );

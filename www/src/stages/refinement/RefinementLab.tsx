@@ -1,4 +1,5 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
+import { ListChoice } from "../../app/parts/Choice";
 import { pickedIndex } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { axesOf, buttonShape, Chart, Fit, type Frame } from "../../app/parts/charts";
@@ -25,21 +26,12 @@ export function RefinementLab({ figure }: { figure: Figure }) {
   }
   return (
     <SplitLab figure={figure} testid="refinement-lab">
-      <label class="pair-choice">
-        Building
-        <select
-          value={building}
-          onChange={(event) => {
-            figure.act.select({ kind: "refinement", index: Number(event.currentTarget.value) });
-          }}
-        >
-          {buildings.map((one, i) => (
-            <option key={one.building} value={i}>
-              {i} · {refinementWords(one)}
-            </option>
-          ))}
-        </select>
-      </label>
+      <ListChoice
+        title="Building"
+        names={buildings.map((one, i) => `${i} · ${refinementWords(one)}`)}
+        shown={building}
+        onShow={(index) => figure.act.select({ kind: "refinement", index })}
+      />
       <Fit>{(frame) => <Relations outer={frame} figure={figure} building={building} of={shown} />}</Fit>
     </SplitLab>
   );

@@ -9,7 +9,7 @@ import { PALETTE } from "../../../shared/palette";
 import { type End, type Ends, isMeasurable, marked, markIn, NO_MARKS, nextEnd } from "./lengthMarks";
 import { block, epipolarCurve, measureLength, pairs } from "./orientation";
 import { PhotographCanvas } from "./PhotographCanvas";
-import { cutOf, drawCurve, nameOf } from "./photographPicture";
+import { cutOf, drawCurve, nameOf, strokeCased } from "./photographPicture";
 
 const ENDS = ["First end", "Second end"] as const;
 
@@ -262,10 +262,5 @@ function cross(context: CanvasRenderingContext2D, x: number, y: number, colour: 
     path.moveTo(x + inner * dx, y + inner * dy);
     path.lineTo(x + outer * dx, y + outer * dy);
   }
-  context.lineWidth = 5;
-  context.strokeStyle = PALETTE.casing;
-  context.stroke(path);
-  context.lineWidth = 2.5;
-  context.strokeStyle = colour;
-  context.stroke(path);
+  strokeCased(context, path, PALETTE.casing, colour);
 }

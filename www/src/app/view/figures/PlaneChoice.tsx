@@ -1,28 +1,16 @@
 /** Which of several planes, or buildings, a figure shows. */
-import { Choice } from "../../parts/Choice";
+import { Choice, ListChoice } from "../../parts/Choice";
 
-export function PlaneChoice({
-  names,
-  shown,
-  onShow,
-}: {
+interface Props {
   names: readonly string[];
   shown: number;
   onShow: (i: number) => void;
-}) {
-  if (names.length > 7) {
-    return (
-      <label class="pair-choice">
-        Plane
-        <select value={shown} onChange={(event) => onShow(Number(event.currentTarget.value))}>
-          {names.map((name, i) => (
-            <option key={name} value={i}>
-              {name}
-            </option>
-          ))}
-        </select>
-      </label>
-    );
-  }
-  return <Choice legend="Plane" choices={names.map((name, i) => [i, name])} chosen={shown} choose={onShow} />;
+}
+
+export function PlaneChoice({ names, shown, onShow }: Props) {
+  return names.length > 7 ? (
+    <ListChoice title="Plane" names={names} shown={shown} onShow={onShow} />
+  ) : (
+    <Choice legend="Plane" choices={names.map((name, i) => [i, name])} chosen={shown} choose={onShow} />
+  );
 }
