@@ -45,6 +45,9 @@ export interface Resumed {
   point: readonly [candidate: number, at: number] | null;
 }
 
+/** In the place of a view: all of them side by side. */
+export const ALL_VIEWS = -1;
+
 export interface Figure {
   scene: SceneInfo | null;
   /** The undistorted images, by view. */
@@ -53,7 +56,7 @@ export interface Figure {
   params: ParamTree;
   selection: Selection | null;
   detail: SelectionDetail;
-  /** The view that is shown; -1: all of them side by side. */
+  /** The view that is shown, or `ALL_VIEWS`. */
   view: number;
   /** Which cluster plane, or histogram, of the rectangles method is shown. */
   plane: number;

@@ -20,9 +20,6 @@ export interface StageStep {
   isFound: () => boolean;
 }
 
-/** All views side by side. */
-export const ALL_VIEWS = -1;
-
 /** Whether the tour is still at the step of now: the core takes its time to answer. */
 export function stay(): () => boolean {
   const step = tourStep.peek();

@@ -7,6 +7,7 @@ import { batch, effect } from "@preact/signals";
 import type { ParamValue } from "../../shared/paramTree";
 import { formatSelection, parseSelection, type Selection, type Standpoint } from "../../shared/selection";
 import { methodNamed, tabsOf } from "../../stages/catalogue";
+import { ALL_VIEWS } from "../../stages/figure";
 import type { Tab } from "../../stages/list";
 import { degreesOf } from "../parts/numberText";
 import { isBusy } from "../state/activity";
@@ -134,8 +135,6 @@ export function followState(): void {
     last = place;
   });
 }
-
-const ALL_VIEWS = -1;
 
 function presentLink(): Link {
   const { isTurned, theta, isMoved, candidate, at } = selectionDetail.value;

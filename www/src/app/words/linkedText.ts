@@ -24,3 +24,9 @@ export function plain(text: string): string {
     .map((part) => (typeof part === "string" ? part : part.words))
     .join("");
 }
+
+/** As HTML and SVG have it. */
+export function escaped(text: string): string {
+  const names: Record<string, string> = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" };
+  return text.replace(/[&<>"]/g, (one) => names[one] as string);
+}

@@ -1,5 +1,5 @@
 /** An exercise sheet: one HTML file that prints, without answers or with them. */
-import { plain } from "../../app/words/linkedText";
+import { escaped, plain } from "../../app/words/linkedText";
 import { spelledOut } from "../../app/words/papers";
 import { type AnyExercise, mistakesOf, taskText } from "../exercises";
 import { LESSONS } from "../judging/about";
@@ -28,14 +28,6 @@ pre { padding: .6em; border: 1px solid #bbb; white-space: pre-wrap; overflow-wra
 .answer { padding: .2em .8em; border-left: 3px solid #111; }
 @media print { body { margin: 0; padding: 0; } a { color: inherit; text-decoration: none; } }
 `;
-
-export function escaped(text: string): string {
-  return text
-    .replaceAll("&", "&amp;")
-    .replaceAll("<", "&lt;")
-    .replaceAll(">", "&gt;")
-    .replaceAll('"', "&quot;");
-}
 
 /** The whole file. */
 export function sheetOf(sheet: Sheet): string {

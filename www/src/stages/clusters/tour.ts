@@ -3,7 +3,8 @@ import { counted } from "../../app/parts/counted";
 import { results } from "../../app/state/results";
 import { selection, showView, tab } from "../../app/state/viewState";
 import { pickedIndex } from "../../shared/selection";
-import { ALL_VIEWS, type StageStep } from "../tourStep";
+import { ALL_VIEWS } from "../figure";
+import type { StageStep } from "../tourStep";
 
 export default [
   {

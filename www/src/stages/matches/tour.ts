@@ -6,9 +6,10 @@ import { params } from "../../app/state/parameters";
 import { results } from "../../app/state/results";
 import { selectionDetail } from "../../app/state/selectionDetail";
 import { select, showView } from "../../app/state/viewState";
+import { ALL_VIEWS } from "../figure";
 import type { Results } from "../list";
 import { segmentLength } from "../segments/tour";
-import { ALL_VIEWS, known, roofLines, type StageStep, stay } from "../tourStep";
+import { known, roofLines, type StageStep, stay } from "../tourStep";
 
 const HIGH_CORRELATION = 0.9;
 

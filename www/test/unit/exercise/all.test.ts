@@ -2,12 +2,12 @@
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { exercisesPage } from "../../../scripts/exercisesPage";
-import { plain } from "../../../src/app/words/linkedText";
+import { escaped, plain } from "../../../src/app/words/linkedText";
 import { EXERCISES, exerciseNamed, mistakesOf } from "../../../src/exercise/exercises";
 import { LESSONS } from "../../../src/exercise/judging/about";
 import { drawOf } from "../../../src/exercise/judging/judgeNumber";
 import { quantityText } from "../../../src/exercise/judging/quantity";
-import { escaped, sheetOf } from "../../../src/exercise/page/sheet";
+import { sheetOf } from "../../../src/exercise/page/sheet";
 
 describe("the exercises", () => {
   it("are thirty at least, about ten of each kind, and each lesson has two", () => {

@@ -1,5 +1,6 @@
 /** What is shown while nothing is open: a finished model, the photographs that it came from, and where to put one's own. */
 import { counted } from "../../parts/counted";
+import { baseName } from "../inputFiles";
 import "./entrance.css";
 import { signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
@@ -204,8 +205,4 @@ function Photographs() {
       </ul>
     </div>
   );
-}
-
-function baseName(path: string): string {
-  return path.slice(path.lastIndexOf("/") + 1);
 }

@@ -2,9 +2,9 @@
 import { useSignal } from "@preact/signals";
 import type { MeasuredLength, OrientationReport } from "../../../shared/orientation";
 import { parsePositive, TextField } from "../../parts/TextField";
+import { baseName } from "../inputFiles";
 import { MeasureFigure } from "./MeasureFigure";
 import { block, setScale } from "./orientation";
-import { nameOf } from "./photographPicture";
 
 /** What a known length is of: places in the photographs, the cameras above the ground, or two cameras apart. */
 const MARKED = "marked";
@@ -31,8 +31,8 @@ export function KnownLength({ report }: { report: OrientationReport }) {
           <option value={HEIGHT}>Mean height of the cameras above the points</option>
           {neighbours(report).map(([a, b]) => (
             <option key={`${a} ${b}`} value={`${a} ${b}`}>
-              From camera {nameOf(report.photos[a]?.file ?? "")} to camera{" "}
-              {nameOf(report.photos[b]?.file ?? "")}
+              From camera {baseName(report.photos[a]?.file ?? "")} to camera{" "}
+              {baseName(report.photos[b]?.file ?? "")}
             </option>
           ))}
         </select>

@@ -6,10 +6,11 @@ import { useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { LengthMark, MeasuredLength, OrientationReport } from "../../../shared/orientation";
 import { PALETTE } from "../../../shared/palette";
+import { baseName } from "../inputFiles";
 import { type End, type Ends, isMeasurable, marked, markIn, NO_MARKS, nextEnd } from "./lengthMarks";
 import { block, epipolarCurve, measureLength, pairs } from "./orientation";
 import { PhotographCanvas } from "./PhotographCanvas";
-import { cutOf, drawCurve, nameOf, strokeCased } from "./photographPicture";
+import { cutOf, drawCurve, strokeCased } from "./photographPicture";
 
 const ENDS = ["First end", "Second end"] as const;
 
@@ -145,7 +146,7 @@ function Markable({ files, file, other, ends, end, onShow, onMark }: MarkablePro
   return (
     <PhotographCanvas
       file={file}
-      label={`${nameOf(file)}: click to mark the ${ENDS[end].toLowerCase()}; arrow keys move the mark`}
+      label={`${baseName(file)}: click to mark the ${ENDS[end].toLowerCase()}; arrow keys move the mark`}
       draw={(context, scale) => draw(context, scale, ends, end, file, curve.value)}
       of={[curve.value, ends, end, file]}
       onPlace={(x, y) => onMark(x, y, true)}
@@ -164,7 +165,7 @@ function Markable({ files, file, other, ends, end, onShow, onMark }: MarkablePro
           <select value={file} onChange={(event) => onShow(event.currentTarget.value)}>
             {files.map((one) => (
               <option key={one} value={one}>
-                {nameOf(one)}
+                {baseName(one)}
               </option>
             ))}
           </select>
@@ -216,7 +217,7 @@ function Magnifier({ mark, onMark }: { mark: LengthMark; onMark: (x: number, y: 
       width={CUT_PX * ENLARGED}
       height={CUT_PX * ENLARGED}
       role="img"
-      aria-label={`The mark in ${nameOf(file)}, enlarged: column ${x.toFixed(1)}, row ${y.toFixed(1)}`}
+      aria-label={`The mark in ${baseName(file)}, enlarged: column ${x.toFixed(1)}, row ${y.toFixed(1)}`}
       onClick={(event) => {
         const corner = event.currentTarget.getBoundingClientRect();
         const scale = CUT_PX / corner.width;

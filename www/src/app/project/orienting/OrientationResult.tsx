@@ -3,11 +3,11 @@ import type { OrientationReport } from "../../../shared/orientation";
 import { grouped } from "../../parts/numberText";
 import { askedBy, onPage } from "../../session/failureNotice";
 import { isBusy } from "../../state/activity";
+import { baseName } from "../inputFiles";
 import { ControlPoints } from "./ControlPoints";
 import { KnownLength } from "./KnownLength";
 import { OverlapPlan } from "./OverlapPlan";
 import { computeOrientation, saveOrientation, saveOrientationFiles } from "./orientation";
-import { nameOf } from "./photographPicture";
 
 const FILES: readonly (readonly [string, string])[] = [
   ["cameras.txt", "focal length, distortion"],
@@ -50,7 +50,7 @@ export function OrientationResult({ report }: { report: OrientationReport }) {
           <ul class="left-out">
             {report.left_out.map(({ file, problem }) => (
               <li key={file}>
-                <b>{nameOf(file)}</b>: {onPage(problem)}
+                <b>{baseName(file)}</b>: {onPage(problem)}
               </li>
             ))}
           </ul>
@@ -114,7 +114,7 @@ function Photographs({ report }: { report: OrientationReport }) {
           <tbody class="numbers">
             {report.photos.map((one) => (
               <tr key={one.file}>
-                <th scope="row">{nameOf(one.file)}</th>
+                <th scope="row">{baseName(one.file)}</th>
                 <td>{one.rays}</td>
                 <td>{one.partners}</td>
                 <td>{one.rms_px.toFixed(2)}</td>

@@ -2,10 +2,11 @@
 import { useSignal, useSignalEffect } from "@preact/signals";
 import { PALETTE } from "../../../shared/palette";
 import { counted } from "../../parts/counted";
+import { baseName } from "../inputFiles";
 import { epipolarCurve, pairs, report, type ShownPair, shownPair, showPair } from "./orientation";
 import { PhotographCanvas } from "./PhotographCanvas";
 import { nearestMatch } from "./pairGeometry";
-import { drawCurve, nameOf } from "./photographPicture";
+import { drawCurve } from "./photographPicture";
 
 const DOT_PX = 2;
 
@@ -57,7 +58,7 @@ export function PairFigure() {
           >
             {pairs.value.map((one, place) => (
               <option key={`${one.first} ${one.second}`} value={String(place)}>
-                {nameOf(one.first)} – {nameOf(one.second)}: {counted(one.matches, "matches")}
+                {baseName(one.first)} – {baseName(one.second)}: {counted(one.matches, "matches")}
               </option>
             ))}
           </select>
@@ -122,14 +123,14 @@ function Picture({ path, matches, side, chosen, curve, onPick }: PictureProps) {
   return (
     <PhotographCanvas
       file={path}
-      label={`${nameOf(path)} with its matches`}
+      label={`${baseName(path)} with its matches`}
       draw={(context, scale) => draw(context, scale, matches, side, chosen, curve)}
       of={[matches, chosen, curve]}
       onPlace={onPick}
     >
       <figcaption class="muted">
         {side === 0 ? "x in " : "x′ and l′ in "}
-        {nameOf(path)}
+        {baseName(path)}
       </figcaption>
     </PhotographCanvas>
   );

@@ -60,7 +60,3 @@ export function strokeCased(
   context.strokeStyle = colour;
   context.stroke(path);
 }
-
-export function nameOf(path: string): string {
-  return path.slice(path.lastIndexOf("/") + 1);
-}

@@ -1,5 +1,6 @@
 /** Photographs without orientation: what is missing, which programs write it, and what the photographs say themselves. */
 import { counted } from "../../parts/counted";
+import { baseName } from "../inputFiles";
 import "./photographsOnly.css";
 import { signal } from "@preact/signals";
 import { type ComponentChildren, type ComponentType, Fragment } from "preact";
@@ -176,7 +177,7 @@ function WhatIsKnown({ all }: { all: readonly Photograph[] }) {
             <tbody>
               {all.map(({ path, stated: { camera, focal_mm, taken, position, height_m } }) => (
                 <tr key={path}>
-                  <th scope="row">{path.slice(path.lastIndexOf("/") + 1)}</th>
+                  <th scope="row">{baseName(path)}</th>
                   <td>{camera === "" ? "–" : camera}</td>
                   <td>{focal_mm === null ? "–" : `${Number(focal_mm.toFixed(2))} mm`}</td>
                   <td>{taken?.slice(0, "YYYY-MM-DD HH:MM".length) ?? "–"}</td>

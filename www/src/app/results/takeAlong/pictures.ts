@@ -3,7 +3,8 @@
  * pictures; and the same as a PNG in print size. Controls are left out.
  */
 import { paintingOf } from "../../view/images/pen";
-import { at, escaped, hex, SvgPen } from "./svgPen";
+import { escaped } from "../../words/linkedText";
+import { at, hex, SvgPen } from "./svgPen";
 
 /** What a style sheet says of a chart, and a file has to say itself. */
 const STYLES = [

@@ -1,5 +1,6 @@
 /** Draws a picture into an SVG file: the photograph as a JPEG, and lines as lines. */
 import { type Fill, fontOf, type Pen, type PenPath, type Stroke, type Window } from "../../view/images/pen";
+import { escaped } from "../../words/linkedText";
 
 /** So many pixels of a photograph are embedded at most, along a side. */
 const MOST_PX = 2400;
@@ -99,11 +100,6 @@ export class SvgPen implements Pen {
 /** A number with three decimals at most. */
 export function at(value: number): string {
   return String(Math.round(1000 * value) / 1000);
-}
-
-export function escaped(text: string): string {
-  const names: Record<string, string> = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" };
-  return text.replace(/[&<>"]/g, (one) => names[one] as string);
 }
 
 const known = new Map<string, string>();

@@ -3,11 +3,11 @@ import "./images.css";
 import type { ComponentChildren } from "preact";
 import type { Mark } from "../../../kinds/parts/marks";
 import type { Vec2 } from "../../../shared/records";
-import type { Figure } from "../../../stages/figure";
+import { ALL_VIEWS, type Figure } from "../../../stages/figure";
 import { followsSelection, zoomToSelection } from "../../state/viewState";
 import type { Overlay } from "./drawing";
 import { FigureImage } from "./ImageRow";
-import { ALL_VIEWS, ViewPicker } from "./ViewPicker";
+import { ViewPicker } from "./ViewPicker";
 
 /** Something that is drawn in the views by clicks. */
 export interface PlaceTool {

@@ -1,9 +1,7 @@
 /** Which view is shown. */
 import type { ViewInfo } from "../../../shared/records";
+import { ALL_VIEWS } from "../../../stages/figure";
 import { Choice } from "../../parts/Choice";
-
-/** All views side by side. */
-export const ALL_VIEWS = -1;
 
 interface Props {
   views: readonly Pick<ViewInfo, "name">[];
