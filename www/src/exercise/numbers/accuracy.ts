@@ -1,7 +1,7 @@
 /** Two views and more: parallax, and how well a height is known. */
 import { counted } from "../../app/parts/counted";
 import { numberExercise } from "../judging/judgeNumber";
-import { figures, stepped } from "../judging/values";
+import { figures, SAID, stepped } from "../judging/values";
 
 export const parallaxOfRidge = numberExercise({
   name: "parallaxOfRidge",
@@ -31,7 +31,7 @@ export const parallaxOfRidge = numberExercise({
   mistakes: {
     "whole parallax":
       "This is how far one of the points moves. The ground moves as well; the height is in the difference of both.",
-    "baseline doubled": "The baseline is doubled: the distance between the two centres counts once.",
+    "baseline doubled": SAID.baselineDoubled,
     "half the baseline":
       "Half the baseline: each camera is half of it away from the middle, and the images move in both.",
     "baseline forgotten":
@@ -78,7 +78,7 @@ export const sigmaOfHeight = numberExercise({
       "This is made of variances, whose unit is squared. The standard deviation is the square root.",
     "depth not squared":
       "The depth counts squared: once because the image gets smaller, and once because the rays get more parallel.",
-    "baseline doubled": "The baseline is doubled: the distance between the two centres counts once.",
+    "baseline doubled": SAID.baselineDoubled,
     "baseline forgotten":
       "This is the standard deviation in the plane, Z / f · σ. Across it, the depth is as much worse as the baseline is smaller than the depth.",
   },

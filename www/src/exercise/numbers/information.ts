@@ -1,7 +1,7 @@
 /** Object space and evidence: azimuths, bits and nats. */
 import { DEGREE } from "../../shared/linear";
 import { numberExercise } from "../judging/judgeNumber";
-import { figures, stepped } from "../judging/values";
+import { figures, SAID, stepped } from "../judging/values";
 
 export const azimuthOfEave = numberExercise({
   name: "azimuthOfEave",
@@ -35,7 +35,7 @@ export const azimuthOfEave = numberExercise({
       "This counts from north, clockwise, as a compass does, or ΔX and ΔY have changed places. Here azimuths count from X towards Y.",
     "quadrant lost":
       "The arc tangent of a quotient does not know which of both is negative: take atan2(ΔY, ΔX), or add 180°.",
-    "radians for degrees": "The number is that of radians. Multiply by 180 / π.",
+    "radians for degrees": SAID.resultInRadians,
     "the perpendicular direction":
       "This is the perpendicular direction: the other main direction of the building, not that of this line.",
     "of the points": "This is the azimuth of one end as seen from the origin. Subtract the ends first.",

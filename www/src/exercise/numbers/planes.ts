@@ -1,7 +1,7 @@
 /** Planes and roofs: angles, heights, and what a wrong plane does to an image. */
 import { DEGREE } from "../../shared/linear";
 import { numberExercise } from "../judging/judgeNumber";
-import { figures, stepped } from "../judging/values";
+import { figures, SAID, stepped } from "../judging/values";
 
 export const slopeOfHip = numberExercise({
   name: "slopeOfHip",
@@ -35,7 +35,7 @@ export const slopeOfHip = numberExercise({
     "√2 upside down":
       "The hip would be steeper than the planes in which it lies. Its way in plan is longer, by √2: divide.",
     "half the rise": "The way in plan is √2 as long, not twice: it is the diagonal of a square.",
-    "radians for degrees": "The number is that of radians. Multiply by 180 / π.",
+    "radians for degrees": SAID.resultInRadians,
     "sine for tangent":
       "The sine stands where the tangent should: rise over the way in plan, not over the way in the plane.",
     "from the vertical": "This is the angle from the vertical. A slope is measured from the horizontal.",
@@ -81,12 +81,11 @@ export const shiftOfWrongPlane = numberExercise({
     "angle for tangent": "The difference of the angles stands where that of their tangents should.",
     "height for height error":
       "This is the height of one plane above the eave. What counts is how far the two are apart.",
-    "radians for degrees":
-      "The tangents are those of as many radians as there are degrees. Multiply by π / 180 first.",
+    "radians for degrees": SAID.tangentsOfDegrees,
     "depth not squared": "The depth counts squared: the parallax is f B / Z, and its derivative f B / Z².",
     "baseline forgotten":
       "The distance between the photographs is missing: from one place, a wrong plane cannot be seen.",
-    "baseline doubled": "The baseline is doubled: the distance between the two centres counts once.",
+    "baseline doubled": SAID.baselineDoubled,
   },
 });
 
@@ -123,8 +122,7 @@ export const heightOfRidge = numberExercise({
     "ridge in the middle":
       "The ridge is taken to be in the middle. Planes of different slope meet nearer to the steeper eave.",
     "whole width": "A plane rises as far as the ridge only, not over the whole width.",
-    "radians for degrees":
-      "The tangents are those of as many radians as there are degrees. Multiply by π / 180 first.",
+    "radians for degrees": SAID.tangentsOfDegrees,
     "sine for tangent":
       "The sine stands where the tangent should: distances between eaves are measured in plan.",
     "rises added":

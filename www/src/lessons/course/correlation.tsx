@@ -9,14 +9,13 @@ import { metres, num, pixels } from "../parts/say";
 import { ImageLine } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { atHeight, fundamental, imageOf, planeHomography, projection } from "../toy/camera";
-import { aerial, CORNERS, photograph, surfaceAt } from "../toy/house";
+import { aerial, photograph, SOUTH_EAVE, surfaceAt } from "../toy/house";
 import { meanOf, meanSquare, ncc, planeAt, relit, warpedWindow, windowAt } from "../toy/windows";
 
 /** Nearer to each other than in other lessons, as on one strip: B99 matches neighbouring views for this. */
 const FIRST = aerial([-3, -9, 42]);
 const SECOND = aerial([-1, -1, 42]);
 const pictures = computed(() => [photograph(FIRST), photograph(SECOND)] as const);
-const EAVE = [CORNERS.southEaveWest, CORNERS.southEaveEast] as const;
 
 /** A place on the south roof. */
 const PLACE: Vec2 = imageOf(FIRST, [-1.5, -1.9, 6.575]);
@@ -172,7 +171,7 @@ const shaped = (of: Shape) => {
     return windowAt(pictures.value[1], inSecond(TRUE_HEIGHT), WARPED);
   }
   const { X } = surfaceAt(FIRST, PLACE);
-  const { n } = planeAt(EAVE, of === "level" ? 0 : Math.atan2(3, 4));
+  const { n } = planeAt(SOUTH_EAVE, of === "level" ? 0 : Math.atan2(3, 4));
   const H = planeHomography(FIRST, SECOND, n, -(n[0] * X[0] + n[1] * X[1] + n[2] * X[2]));
   return warpedWindow(pictures.value[1], H, PLACE, WARPED);
 };
@@ -208,7 +207,7 @@ function WarpFigure() {
 const F = fundamental(projection(FIRST), projection(SECOND));
 const onEave = signal(0.35);
 const EAVE_LINES = [FIRST, SECOND].map((camera) =>
-  EAVE.map((X) => imageOf(camera, X)),
+  SOUTH_EAVE.map((X) => imageOf(camera, X)),
 ) as unknown as readonly [readonly [Vec2, Vec2], readonly [Vec2, Vec2]];
 const eavePoint = (t: number): Vec2 => {
   const [p, q] = EAVE_LINES[0];

@@ -9,20 +9,19 @@ import { degrees, num, pixels, place } from "../parts/say";
 import { ImagePane } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { type Camera, imageOf, mapped, planeHomography } from "../toy/camera";
-import { aerial, CORNERS, photograph, SLOPE, surfaceAt } from "../toy/house";
+import { aerial, photograph, SLOPE, SOUTH_EAVE, surfaceAt } from "../toy/house";
 import { type InterestPoint, ncc, peakOf, planeAt, similarity, warpedWindow, windowAt } from "../toy/windows";
 
 const FIRST = aerial([-3, -8, 42]);
 const SECOND = aerial([7, -5, 42]);
 const NEAR = aerial([0, -7.5, 42]);
 const FAR = aerial([13, 3, 40]);
-const EAVE = [CORNERS.southEaveWest, CORNERS.southEaveEast] as const;
 
 type PlaneName = "roof" | "ground";
 const plane = signal<PlaneName>("roof");
 const at = signal<Vec2>([150, 130]);
 const planeOf = (name: PlaneName) =>
-  name === "roof" ? planeAt(EAVE, SLOPE) : { n: [0, 0, 1] as const, d: 0 };
+  name === "roof" ? planeAt(SOUTH_EAVE, SLOPE) : { n: [0, 0, 1] as const, d: 0 };
 const matrixOf = (name: PlaneName) => {
   const { n, d } = planeOf(name);
   return planeHomography(FIRST, SECOND, n, d);
@@ -100,7 +99,7 @@ const strip = () => {
   return windowAt(shot(0).picture, [x, y], size);
 };
 const warped = (angle: number) => {
-  const { n, d } = planeAt(EAVE, angle);
+  const { n, d } = planeAt(SOUTH_EAVE, angle);
   const { x, y, size } = STRIP;
   return warpedWindow(shot(1).picture, planeHomography(FIRST, SECOND, n, d), [x, y], size);
 };
@@ -214,7 +213,9 @@ const curves = computed(() => {
       return known;
     }
     const points = pointsOf(of);
-    const made = ANGLES.map((angle) => similarity(all[0] as Shot, all[other] as Shot, EAVE, angle, points));
+    const made = ANGLES.map((angle) =>
+      similarity(all[0] as Shot, all[other] as Shot, SOUTH_EAVE, angle, points),
+    );
     cache.set(key, made);
     return made;
   };

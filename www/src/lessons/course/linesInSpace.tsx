@@ -11,7 +11,7 @@ import { ImagePane, OBSERVER, PlaneOfLine, Space, seen } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { atHeight, type Camera, imageOf } from "../toy/camera";
 import { noisy, stream } from "../toy/evidence";
-import { ACROSS, aerial, CORNERS } from "../toy/house";
+import { ACROSS, aerial, RIDGE, SOUTH_EAVE } from "../toy/house";
 import { type Ends2, type Ends3, inView, lineError, lineOfTwo, partBetween } from "../toy/lines";
 
 const [FIRST, SECOND] = ACROSS;
@@ -58,7 +58,6 @@ function FourFigure({ isRevealed }: { isRevealed: boolean }) {
   );
 }
 
-const EAVE: Ends3 = [CORNERS.southEaveWest, CORNERS.southEaveEast];
 /** Which part of the eave each view's segment shows, from 0 to 1. */
 const parts = signal<readonly [readonly [number, number], readonly [number, number]]>([
   [0.05, 0.6],
@@ -66,7 +65,7 @@ const parts = signal<readonly [readonly [number, number], readonly [number, numb
 ]);
 const segmentOf = (view: 0 | 1): Ends2 => {
   const [from, to] = parts.value[view];
-  return inView(view === 0 ? FIRST : SECOND, [mix3(...EAVE, from), mix3(...EAVE, to)]);
+  return inView(view === 0 ? FIRST : SECOND, [mix3(...SOUTH_EAVE, from), mix3(...SOUTH_EAVE, to)]);
 };
 const fromSegments = () => lineOfTwo([FIRST, SECOND], [segmentOf(0), segmentOf(1)]);
 
@@ -74,7 +73,7 @@ function EndsFigure({ isRevealed }: { isRevealed: boolean }) {
   const L = partBetween(fromSegments(), 0, -7, 7);
   const pane = (view: 0 | 1, camera: Camera) => {
     const [p, q] = segmentOf(view);
-    const whole = inView(camera, EAVE);
+    const whole = inView(camera, SOUTH_EAVE);
     const handle = (end: 0 | 1, at: Vec2) => (
       <Handle
         at={at}
@@ -114,7 +113,6 @@ function EndsFigure({ isRevealed }: { isRevealed: boolean }) {
 }
 
 /** Segments of the ridge in three views, with a pixel and a half of noise at their ends. */
-const RIDGE: Ends3 = [CORNERS.ridgeWest, CORNERS.ridgeEast];
 const MEASURED: readonly Ends2[] = (() => {
   const random = stream(5);
   return ACROSS.map((camera) =>

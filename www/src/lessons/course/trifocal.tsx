@@ -10,7 +10,7 @@ import { ImageLine, ImagePane, PlaneOfLine, Space, seen } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { type Camera, projection } from "../toy/camera";
 import { noisy, stream } from "../toy/evidence";
-import { ACROSS, aerial, CORNERS } from "../toy/house";
+import { ACROSS, aerial, CORNERS, RIDGE, SOUTH_EAVE } from "../toy/house";
 import {
   type Ends2,
   type Ends3,
@@ -23,7 +23,6 @@ import {
 } from "../toy/lines";
 
 const [FIRST, SECOND, THIRD] = ACROSS;
-const RIDGE: Ends3 = [CORNERS.ridgeWest, CORNERS.ridgeEast];
 const IN_FIRST = inView(FIRST, RIDGE);
 /** By how much the line of the second view is moved down, pixels, at its two ends. */
 const moved = signal<readonly [number, number]>([0, 0]);
@@ -138,7 +137,7 @@ function TensorFigure() {
 }
 
 const DECOYS = {
-  A: [CORNERS.southEaveWest, CORNERS.southEaveEast],
+  A: SOUTH_EAVE,
   B: RIDGE,
   C: [CORNERS.northEaveWest, CORNERS.northEaveEast],
 } as const satisfies Record<string, Ends3>;

@@ -63,7 +63,7 @@ export function imageOf(camera: Camera, X: Vec3): Vec2 {
 }
 
 /** The direction in which an image point is seen, of depth 1. */
-function rayOf(camera: Camera, x: Vec2): Vec3 {
+export function rayOf(camera: Camera, x: Vec2): Vec3 {
   return apply3(transpose(camera.R), apply3(inverse(calibration(camera)), homogeneous(x)));
 }
 

@@ -1,7 +1,7 @@
 /** The drawn house and its photographs: a gable, ridge from west to east, on level ground; metres, Z up. */
-import { add, apply3, cross, dot, inverse, scaled, sub, transpose, unit } from "../../shared/linear";
+import { add, apply3, cross, dot, inverse, sub, transpose, unit } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
-import { type Camera, calibration, depthOf, imageOf, lookingAt } from "./camera";
+import { type Camera, calibration, depthOf, imageOf, lookingAt, rayOf } from "./camera";
 
 /** Half of its length and width, heights of eaves and ridge. */
 export const HOUSE = { length: 5, width: 4, eave: 5, ridge: 8 } as const;
@@ -42,11 +42,14 @@ export const CORNERS = {
   ridgeEast: [a, 0, ridge] as Vec3,
 };
 
+export const SOUTH_EAVE = [CORNERS.southEaveWest, CORNERS.southEaveEast] as const;
+export const RIDGE = [CORNERS.ridgeWest, CORNERS.ridgeEast] as const;
+
 /** Lines of the house that are level, by their ends: what W96 looks for. */
 export const EDGES: readonly (readonly [Vec3, Vec3])[] = [
-  [CORNERS.southEaveWest, CORNERS.southEaveEast],
+  SOUTH_EAVE,
   [CORNERS.northEaveWest, CORNERS.northEaveEast],
-  [CORNERS.ridgeWest, CORNERS.ridgeEast],
+  RIDGE,
   [CORNERS.southEaveWest, CORNERS.northEaveWest],
   [CORNERS.southEaveEast, CORNERS.northEaveEast],
 ];
@@ -164,15 +167,20 @@ function noiseAt(x: number, y: number): number {
 }
 
 function greyAlong(C: Vec3, ray: Vec3, seen: readonly Face[], look: Look): number {
-  for (const one of seen) {
+  const { face: hit, X } = surfaceAlong(C, ray, seen);
+  return hit === null ? greyOf("ground", [X[0], X[1]], look) : greyOf(hit.name, onFace(hit, X), look);
+}
+
+/** The nearest surface along a ray: one of the faces, or the ground. */
+function surfaceAlong(C: Vec3, ray: Vec3, faces: readonly Face[]): { face: Face | null; X: Vec3 } {
+  for (const one of faces) {
     const s = dot(one.normal, sub(one.corners[0] as Vec3, C)) / dot(one.normal, ray);
-    const X = add(C, scaled(ray, s));
+    const X = add(C, ray, s);
     if (s > 0 && isInside(one, X)) {
-      return greyOf(one.name, onFace(one, X), look);
+      return { face: one, X };
     }
   }
-  const X = add(C, scaled(ray, -C[2] / ray[2]));
-  return greyOf("ground", [X[0], X[1]], look);
+  return { face: null, X: add(C, ray, -C[2] / ray[2]) };
 }
 
 /** Grey value between pixels, bilinear; the nearest pixel beyond the margin. */
@@ -198,13 +206,6 @@ export function facesIn(camera: Camera): readonly { face: Face; outline: readonl
 
 /** What is seen at an image point. */
 export function surfaceAt(camera: Camera, x: Vec2): { name: FaceName | "ground"; X: Vec3 } {
-  const ray = apply3(transpose(camera.R), apply3(inverse(calibration(camera)), [x[0], x[1], 1]));
-  for (const one of facesSeenFrom(camera.C)) {
-    const s = dot(one.normal, sub(one.corners[0] as Vec3, camera.C)) / dot(one.normal, ray);
-    const X = add(camera.C, scaled(ray, s));
-    if (s > 0 && isInside(one, X)) {
-      return { name: one.name, X };
-    }
-  }
-  return { name: "ground", X: add(camera.C, scaled(ray, -camera.C[2] / ray[2])) };
+  const { face: hit, X } = surfaceAlong(camera.C, rayOf(camera, x), facesSeenFrom(camera.C));
+  return { name: hit?.name ?? "ground", X };
 }

@@ -46,14 +46,15 @@ export function dragged(from: Vector3, ray: Ray, isUpright: boolean): Vector3 | 
 }
 
 export function buildHandles(handles: readonly Vector3[]): Layer {
-  const geometry = new BufferGeometry().setFromPoints([...handles]);
-  const material = new PointsMaterial({
-    color: PALETTE.selected,
-    size: DOT_PX,
-    sizeAttenuation: false,
-    depthTest: false,
-  });
-  const object = new Points(geometry, material);
+  const object = dots(handles, PALETTE.selected, DOT_PX);
   object.renderOrder = 10;
   return unpicked({ object, dispose: () => disposeObject(object) });
+}
+
+/** Dots of one size on the screen, over whatever lies before them. */
+export function dots(places: readonly Vector3[], color: string, size: number, transparent = false): Points {
+  return new Points(
+    new BufferGeometry().setFromPoints([...places]),
+    new PointsMaterial({ color, size, sizeAttenuation: false, depthTest: false, transparent }),
+  );
 }

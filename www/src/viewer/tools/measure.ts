@@ -5,15 +5,14 @@ import {
   Group,
   Line,
   LineBasicMaterial,
-  Points,
-  PointsMaterial,
   type Ray,
   type Vector2,
   Vector3,
 } from "three";
 import { areaVector, norm } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
-import { disposeObject, type Layer } from "../scene/layer";
+import { disposeObject, type Layer, unpicked } from "../scene/layer";
+import { dots } from "./handles";
 
 export interface Measured {
   points: number;
@@ -120,20 +119,10 @@ export function buildMeasure(points: readonly Vector3[]): Layer {
     new BufferGeometry().setFromPoints([...closed]),
     new LineBasicMaterial({ color: PALETTE.rejected, depthTest: false, transparent: true }),
   );
-  const dots = new Points(
-    new BufferGeometry().setFromPoints([...points]),
-    new PointsMaterial({
-      color: PALETTE.rejected,
-      size: 9,
-      sizeAttenuation: false,
-      depthTest: false,
-      transparent: true,
-    }),
-  );
-  for (const one of [line, dots]) {
+  for (const one of [line, dots(points, PALETTE.rejected, 9, true)]) {
     one.renderOrder = 5;
     one.raycast = () => undefined;
+    object.add(one);
   }
-  object.add(line, dots);
-  return { object, pick: () => null, highlight: () => undefined, dispose: () => disposeObject(object) };
+  return unpicked({ object, dispose: () => disposeObject(object) });
 }
