@@ -1,5 +1,4 @@
 /** B99 2: the patches of dense matching in plan, by what their planes are, or by how probably they are buildings. */
-import { pickedIndex } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { useState } from "preact/hooks";
 import { Choice } from "../../app/parts/Choice";
@@ -9,6 +8,7 @@ import { areasOf, type PlanColours, planeAt, squaresAt } from "../../app/selecti
 import { PlanChart } from "../../app/view/figures/PlanChart";
 import { SplitLab } from "../../app/view/figures/SplitLab";
 import type { DensePlanes } from "../../shared/records";
+import { pickedIndex } from "../../shared/selection";
 import type { Figure } from "../figure";
 
 const CHOICES: readonly (readonly [PlanColours, string])[] = [

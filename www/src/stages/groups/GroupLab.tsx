@@ -1,11 +1,11 @@
 /** B99 figures 17 to 20: the groups of coplanar half-planes. */
-import { degreesOf, slopeOf } from "../../app/parts/numberText";
-import { pickedIndex } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { counted } from "../../app/parts/counted";
+import { degreesOf, slopeOf } from "../../app/parts/numberText";
 import { Filmstrip } from "../../app/view/images/Filmstrip";
 import { category } from "../../shared/palette";
 import { densePlanesOf, type PlaneGroup, rectanglesOf } from "../../shared/records";
+import { pickedIndex } from "../../shared/selection";
 import type { Figure } from "../figure";
 
 /** Figures 17 to 20: the groups, largest first. */

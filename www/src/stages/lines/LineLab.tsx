@@ -1,10 +1,10 @@
 /** B99 figure 9: accuracy against the number of views. */
-import { pickedIndex } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { axesOf, Chart, dotsOf, Fit, type Frame, type Scale } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { Filmstrip } from "../../app/view/images/Filmstrip";
 import type { LineRecord } from "../../shared/records";
+import { pickedIndex } from "../../shared/selection";
 import type { Figure } from "../figure";
 import type { Results } from "../list";
 

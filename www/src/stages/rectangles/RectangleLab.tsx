@@ -1,6 +1,6 @@
 /** W96 3.6: the window of a plane between parallel lines, and the histogram of positions (figures 10 and 11). */
-import { ListChoice } from "../../app/parts/Choice";
 import "../../app/view/figures/figures.css";
+import { ListChoice } from "../../app/parts/Choice";
 import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { PAIR_WORDS } from "../../app/parts/reasonText";

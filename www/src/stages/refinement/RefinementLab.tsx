@@ -1,13 +1,13 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
-import { ListChoice } from "../../app/parts/Choice";
-import { pickedIndex } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
+import { ListChoice } from "../../app/parts/Choice";
 import { axesOf, buttonShape, Chart, Fit, type Frame } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
 import { RELATION_WORDS, refinementWords } from "../../app/parts/reasonText";
 import { SplitLab } from "../../app/view/figures/SplitLab";
 import { buildingOfFacet, relationLimit } from "../../kinds/parts/refinedBuildings";
 import type { BuildingRefinement, TestedRelation } from "../../shared/records";
+import { pickedIndex } from "../../shared/selection";
 import type { Figure } from "../figure";
 
 const KINDS = ["horizontal", "parallel", "perpendicular", "equal_height", "symmetric"] as const;

@@ -1,13 +1,13 @@
 /** Corrections of the model by hand: what can be done with the selected facet, and what has been done. */
-import { pickedIndex } from "../../../shared/selection";
-import { degreesOf, slopeOf } from "../../parts/numberText";
 import "./corrections.css";
 import { signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { facetOf } from "../../../kinds/kinds";
 import { add, edgesOf } from "../../../shared/linear";
 import type { Correction, Facet, NotApplied, Vec3 } from "../../../shared/records";
+import { pickedIndex } from "../../../shared/selection";
 import { counted } from "../../parts/counted";
+import { degreesOf, slopeOf } from "../../parts/numberText";
 import { saveFile } from "../../parts/saveFile";
 import { parseNumber, TextField } from "../../parts/TextField";
 import { redo, undo } from "../../project/projectActions";
@@ -141,6 +141,29 @@ function takeSecond(): void {
 const origin = (): Vec3 => scene.peek()?.origin ?? [0, 0, 0];
 const worldOf = (p: Vec3): Vec3 => add(p, origin());
 
+/** A facet with these corners, local frame. */
+function addFacet(ring: readonly Vec3[]): void {
+  const outline = ring.map(worldOf);
+  void correct({ correction: "add_facet", outline }, outline[0] ?? null);
+}
+
+/** Something to do, on its button; null where it cannot be done now. */
+type Deed = readonly [title: string, act: () => void] | null;
+
+function Deeds({ all }: { all: readonly Deed[] }) {
+  return (
+    <>
+      {all
+        .filter((one) => one !== null)
+        .map(([title, act]) => (
+          <button key={title} type="button" onClick={act}>
+            {title}
+          </button>
+        ))}
+    </>
+  );
+}
+
 const worldEnds = ([p, q]: Ends): [Vec3, Vec3] => [worldOf(p), worldOf(q)];
 
 function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
@@ -161,14 +184,12 @@ function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
   const arm = (kind: Armed["kind"]) => () => {
     armed.value = armed.value?.kind === kind ? null : { kind, facet: index };
   };
-  const buttons: readonly (readonly [string, () => void])[] = [
+  const deeds: readonly Deed[] = [
     ["Confirm", act({ correction: "confirm", facet: place })],
     ["Delete facet", act({ correction: "delete_facet", facet: place })],
     ["Delete building", act({ correction: "delete_building", building: place.at })],
     ["Make level", act({ correction: "set_level", facet: place })],
-    ...(ridge === null
-      ? []
-      : [["Add counterpart", act({ correction: "mirror", facet: place, over: worldEnds(ridge) })] as const]),
+    ridge && ["Add counterpart", act({ correction: "mirror", facet: place, over: worldEnds(ridge) })],
   ];
   return (
     <fieldset disabled={isBusy.value}>
@@ -176,11 +197,7 @@ function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
         Facet {index}, probability {facet.probability.toFixed(2)}
       </legend>
       <div class="row wrap">
-        {buttons.map(([title, onClick]) => (
-          <button key={title} type="button" onClick={onClick}>
-            {title}
-          </button>
-        ))}
+        <Deeds all={deeds} />
         <button
           type="button"
           aria-pressed={armed.value?.kind === "set_symmetric"}
@@ -209,13 +226,9 @@ function Uncovered() {
   if (roof === undefined) {
     return null;
   }
-  const add = () => {
-    const outline = roof.outline.map(worldOf);
-    void correct({ correction: "add_facet", outline }, outline[0] ?? null);
-  };
   return (
     <div class="row wrap">
-      <button type="button" disabled={isBusy.value} onClick={add}>
+      <button type="button" disabled={isBusy.value} onClick={() => addFacet(roof.outline)}>
         Add a facet here ({roof.area_m2.toFixed(0)} m²)
       </button>
     </div>
@@ -339,48 +352,27 @@ function Drawn({ facets, index }: { facets: readonly Facet[]; index: number | nu
   const edge = points.length === 2 ? (points as Ends) : null;
   const beside = edge === null || index === null ? null : nearestEdge(facets, index, edge);
   const add = (ring: readonly Vec3[]) => () => {
-    const outline = ring.map(worldOf);
     forgetDrawn();
-    void correct({ correction: "add_facet", outline }, outline[0] ?? null);
+    addFacet(ring);
   };
-  const withFacet = facet !== undefined && edge !== null;
+  const divide = (own: Facet, along: Ends) => () => {
+    const place = placeOf(own, origin());
+    forgetDrawn();
+    void correct({ correction: "split", facet: place, along: worldEnds(along) }, place.at);
+  };
+  const [a, b, c, d] = points;
+  const corners = a && b && c && d && points.length === 4 ? ringOf([a, b], [c, d]) : points;
+  const deeds: readonly Deed[] = [
+    facet === undefined || edge === null ? null : ["Divide the facet here", divide(facet, edge)],
+    edge && beside && ["Add a facet from here to the selected one", add(ringOf(edge, beside))],
+    points.length < 3 ? null : ["Add facet", add(corners)],
+  ];
   return (
     <div class="row wrap">
       {points.length === 0 && (
         <span class="muted">Draw (in the 3D view) marks the corners of a facet, or an edge.</span>
       )}
-      {withFacet && (
-        <button
-          type="button"
-          onClick={() => {
-            const place = placeOf(facet, origin());
-            forgetDrawn();
-            void correct({ correction: "split", facet: place, along: worldEnds(edge) }, place.at);
-          }}
-        >
-          Divide the facet here
-        </button>
-      )}
-      {edge !== null && beside !== null && (
-        <button type="button" onClick={add(ringOf(edge, beside))}>
-          Add a facet from here to the selected one
-        </button>
-      )}
-      {points.length === 4 && (
-        <button
-          type="button"
-          onClick={add(
-            ringOf([points[0], points[1]] as unknown as Ends, [points[2], points[3]] as unknown as Ends),
-          )}
-        >
-          Add facet
-        </button>
-      )}
-      {points.length >= 3 && points.length !== 4 && (
-        <button type="button" onClick={add(points)}>
-          Add facet
-        </button>
-      )}
+      <Deeds all={deeds} />
       {points.length > 0 && (
         <button type="button" class="quiet" onClick={forgetDrawn}>
           Forget {counted(points.length, "points")}

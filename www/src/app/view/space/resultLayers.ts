@@ -1,9 +1,7 @@
 /** The layers of the 3D view, from the results: each is built anew when what it shows has changed, in a task of its own. */
-
 import { computed, effect, signal } from "@preact/signals";
 import { Vector3 } from "three";
-import { linesOf, shapesOf } from "../../../kinds/kinds";
-import { lineEnds } from "../../../kinds/parts/shapes";
+import { shapesOf } from "../../../kinds/kinds";
 import type { Facet, Vec3 } from "../../../shared/records";
 import type { Tab } from "../../../stages/list";
 import { pageOf, STAGE_LAYERS } from "../../../stages/pages";
@@ -52,13 +50,7 @@ export const LAYERS: Readonly<Record<string, SpaceLayer>> = {
   picked: {
     plan: () => {
       const shapes = shapesOf(selection.value, results.value).filter(({ role }) => role !== "before");
-      const areas = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
-      // A segment is in no place of space, but its line is.
-      const lines =
-        selection.value?.kind === "segment"
-          ? linesOf(selection.value, results.peek()).map((line) => lineEnds(line, results.value))
-          : [];
-      const all = [...areas, ...lines.map((points) => ({ points, closed: false }))];
+      const all = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
       return all.length === 0 ? null : [() => buildHighlight(all), selection.value, results.value];
     },
     isSeen: () => true,
