@@ -1,5 +1,6 @@
-/** Elements that are drawn by hand, and how large they are. */
+/** Elements that are drawn by hand: how large they are, and the keys that move what is in them. */
 import { useEffect, useRef, useState } from "preact/hooks";
+import type { Vec2 } from "../../shared/records";
 
 /** Of a canvas that is drawn anew when what it shows changes. */
 export function useDrawn(draw: (context: CanvasRenderingContext2D) => void, of: readonly unknown[]) {
@@ -33,3 +34,11 @@ export function useSize<E extends Element>() {
   }, []);
   return [element, size] as const;
 }
+
+/** Where the arrow keys lead, in an image: x to the right, y down. */
+export const ARROWS: Readonly<Record<string, Vec2>> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};

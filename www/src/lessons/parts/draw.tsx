@@ -3,7 +3,8 @@ import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useId } from "preact/hooks";
 import { axesOf, type Frame, pathOf, place, type Scale, ticks } from "../../app/parts/charts";
-import { useDrawn, useSize } from "../../app/parts/useDrawn";
+import { ARROWS, useDrawn, useSize } from "../../app/parts/useDrawn";
+import { add } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import { Formula } from "./Formula";
 
@@ -129,18 +130,11 @@ export function Handle<T>(props: HandleProps<T>) {
     return [point.x, point.y];
   };
   const byKey = (event: KeyboardEvent) => {
-    const steps: Readonly<Record<string, Vec2>> = {
-      ArrowLeft: [-step, 0],
-      ArrowRight: [step, 0],
-      ArrowUp: [0, -step],
-      ArrowDown: [0, step],
-    };
-    const by = steps[event.key];
+    const by = ARROWS[event.key];
     if (by !== undefined) {
       event.preventDefault();
       event.stopPropagation();
-      const times = event.shiftKey ? 5 : 1;
-      move([at[0] + times * by[0], at[1] + times * by[1]]);
+      move(add(at, by, event.shiftKey ? 5 * step : step));
     }
   };
   if (isFixed) {

@@ -6,6 +6,7 @@ import { useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { LengthMark, MeasuredLength, OrientationReport } from "../../../shared/orientation";
 import { PALETTE } from "../../../shared/palette";
+import { ARROWS } from "../../parts/useDrawn";
 import { baseName } from "../inputFiles";
 import { type End, type Ends, isMeasurable, marked, markIn, NO_MARKS, nextEnd } from "./lengthMarks";
 import { block, epipolarCurve, measureLength, pairs } from "./orientation";
@@ -151,12 +152,12 @@ function Markable({ files, file, other, ends, end, onShow, onMark }: MarkablePro
       of={[curve.value, ends, end, file]}
       onPlace={(x, y) => onMark(x, y, true)}
       onKey={(event, [width, height]) => {
-        const step = STEPS[event.key];
+        const step = ARROWS[event.key];
         if (step !== undefined) {
           event.preventDefault();
           const { x, y } = own ?? { x: width / 2, y: height / 2 };
-          const far = event.shiftKey ? FAR_STEP : 1;
-          onMark(x + far * step[0], y + far * step[1], false);
+          const by = event.shiftKey ? STEP_PX.far : STEP_PX.near;
+          onMark(x + by * step[0], y + by * step[1], false);
         }
       }}
       head={
@@ -178,13 +179,7 @@ function Markable({ files, file, other, ends, end, onShow, onMark }: MarkablePro
 }
 
 /** What an arrow key moves a mark by, pixels; with the shift key so many times as far. */
-const STEPS: Readonly<Record<string, readonly [number, number]>> = {
-  ArrowLeft: [-0.5, 0],
-  ArrowRight: [0.5, 0],
-  ArrowUp: [0, -0.5],
-  ArrowDown: [0, 0.5],
-};
-const FAR_STEP = 20;
+const STEP_PX = { near: 0.5, far: 10 };
 
 /** The surroundings of a mark as the photograph has them; a click places it there. */
 function Magnifier({ mark, onMark }: { mark: LengthMark; onMark: (x: number, y: number) => void }) {

@@ -6,7 +6,7 @@ import { isInside } from "../../../shared/linear";
 import type { Vec2 } from "../../../shared/records";
 import type { Selection } from "../../../shared/selection";
 import { type Place, PressWatch } from "../../../viewer/tools/press";
-import { useSize } from "../../parts/useDrawn";
+import { ARROWS, useSize } from "../../parts/useDrawn";
 import { textScale } from "../../state/textScale";
 import { drawView, type Overlay } from "./drawing";
 import { cornerAt } from "./graphOverlay";
@@ -228,6 +228,10 @@ function viewportAfterKey(
   fitScale: number,
 ): Viewport | null | undefined {
   const middle = { x: box.width / 2, y: box.height / 2 };
+  const arrow = ARROWS[key];
+  if (arrow !== undefined) {
+    return pan(viewport, -PAN_STEP_PX * arrow[0], -PAN_STEP_PX * arrow[1]);
+  }
   switch (key) {
     case "+":
     case "=":
@@ -236,14 +240,6 @@ function viewportAfterKey(
       return zoomAt(viewport, middle, 1 / ZOOM_STEP, fitScale * 0.5);
     case "0":
       return null;
-    case "ArrowLeft":
-      return pan(viewport, PAN_STEP_PX, 0);
-    case "ArrowRight":
-      return pan(viewport, -PAN_STEP_PX, 0);
-    case "ArrowUp":
-      return pan(viewport, 0, PAN_STEP_PX);
-    case "ArrowDown":
-      return pan(viewport, 0, -PAN_STEP_PX);
     default:
       return undefined;
   }

@@ -2,6 +2,7 @@
 import { signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
+import { clamp } from "../../../shared/linear";
 import { yUp, zUp } from "../../../viewer/scene/frame";
 import type { Corner, Measured, Taken } from "../../../viewer/tools/measure";
 import type { Section } from "../../../viewer/tools/section";
@@ -9,6 +10,7 @@ import type { Viewer } from "../../../viewer/viewer";
 import { Menu } from "../../parts/Menu";
 import { degreesOf } from "../../parts/numberText";
 import { saveFile } from "../../parts/saveFile";
+import { ARROWS } from "../../parts/useDrawn";
 import { isCorrecting, takePoint } from "../../results/corrections/drawn";
 import { mainResults } from "../../state/results";
 import { scene } from "../../state/scene";
@@ -121,12 +123,6 @@ export function SpaceTools({ viewer, onFit, children }: Props) {
 const aim = signal<{ x: number; y: number } | null>(null);
 
 const STEP_PX = 12;
-const STEPS: Record<string, readonly [number, number]> = {
-  ArrowLeft: [-1, 0],
-  ArrowRight: [1, 0],
-  ArrowUp: [0, -1],
-  ArrowDown: [0, 1],
-};
 
 /** Points for the tools without a pointer: arrows move the crosshair (Shift: finely), Enter takes the point below it. */
 function Crosshair({ viewer }: { viewer: Viewer | null }) {
@@ -134,13 +130,13 @@ function Crosshair({ viewer }: { viewer: Viewer | null }) {
   const { clientWidth = 0, clientHeight = 0 } = button.current?.parentElement ?? {};
   const place = aim.value ?? { x: clientWidth / 2, y: clientHeight / 2 };
   const onKeyDown = (event: KeyboardEvent) => {
-    const step = STEPS[event.key];
+    const step = ARROWS[event.key];
     if (step !== undefined) {
       event.preventDefault();
       const size = event.shiftKey ? 1 : STEP_PX;
       aim.value = {
-        x: Math.min(clientWidth - 1, Math.max(0, place.x + size * step[0])),
-        y: Math.min(clientHeight - 1, Math.max(0, place.y + size * step[1])),
+        x: clamp(place.x + size * step[0], 0, clientWidth - 1),
+        y: clamp(place.y + size * step[1], 0, clientHeight - 1),
       };
     }
   };
