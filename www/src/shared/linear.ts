@@ -15,17 +15,29 @@ export function dot(a: Vector, b: Vector): number {
   return sum;
 }
 
-export const add = <V extends Vector>(a: V, b: Vector, times = 1): V =>
-  a.map((one, i) => one + times * (b[i] as number)) as unknown as V;
+/** a + times b. Three numbers are written out: photographs of the lessons are made ray by ray. */
+export function add<V extends Vector>(a: V, b: Vector, times = 1): V {
+  if (a.length !== 3) {
+    return a.map((one, i) => one + times * (b[i] as number)) as unknown as V;
+  }
+  const p = a as unknown as Vec3;
+  const q = b as unknown as Vec3;
+  return [p[0] + times * q[0], p[1] + times * q[1], p[2] + times * q[2]] as unknown as V;
+}
+
 export const sub = <V extends Vector>(a: V, b: Vector): V => add(a, b, -1);
+
 export const scaled = <V extends Vector>(a: V, by: number): V => a.map((one) => one * by) as unknown as V;
+
 export const norm = (a: Vector): number => Math.hypot(...a);
 export const unit = <V extends Vector>(a: V): V => scaled(a, 1 / norm(a));
-export const cross = ([a = 0, b = 0, c = 0]: Vector, [x = 0, y = 0, z = 0]: Vector): Vec3 => [
-  b * z - c * y,
-  c * x - a * z,
-  a * y - b * x,
-];
+
+export function cross(a: Vector, b: Vector): Vec3 {
+  const p = a as unknown as Vec3;
+  const q = b as unknown as Vec3;
+  return [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+}
+
 export const distance2 = (a: Vec2, b: Vec2): number => Math.hypot(a[0] - b[0], a[1] - b[1]);
 /** Between two numbers at a fraction. */
 export const mix = (a: number, b: number, t: number): number => a + t * (b - a);
