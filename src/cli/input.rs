@@ -57,6 +57,7 @@ pub(super) fn open(
         roi: args.roi.or(stated.roi),
         max_views: args.max_views.map(usize::from).or(stated.max_views),
         ground_z: args.ground_z.or(stated.ground_z),
+        ground_range: stated.ground_range,
         reduction: args.reduce.or(stated.reduction),
         terrain: terrain.or(stated.terrain),
         terrain_accuracy_m: args.terrain_accuracy.or(stated.terrain_accuracy_m),

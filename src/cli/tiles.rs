@@ -26,25 +26,27 @@ pub(super) fn reconstruct_tiles(
     let time = start.elapsed().as_secs_f64();
     println!("{} ({time:.1} s)", area.seen_in_words());
     let work: Vec<f64> = area.tiles().iter().map(Tile::looked_at_m2).collect();
-    let mut seconds = Vec::new();
+    let mut seconds = vec![0.0; work.len()];
+    let (mut done, mut worked) = (0, 0.0);
     loop {
         let start = Instant::now();
-        let Some(tile) = area.step(input, &silent()).map_err(refuse)? else {
+        let Some((tile, report)) = area.step(input, &silent()).map_err(refuse)? else {
             break;
         };
         let time = start.elapsed().as_secs_f64();
-        seconds.push(time);
-        let done = seconds.len();
-        let [worked, rest] = [&work[..done], &work[done..]].map(|part| part.iter().sum::<f64>());
+        seconds[tile] = time;
+        done += 1;
+        worked += work[tile];
+        let [spent, all] = [&seconds, &work].map(|part| part.iter().sum::<f64>());
         let left = if worked > 0.0 {
-            seconds.iter().sum::<f64>() / worked * rest
+            spent / worked * (all - worked)
         } else {
             0.0
         };
         println!(
             "tile {done} of {}: {} ({time:.1} s{})",
             work.len(),
-            tile.outcome,
+            report.outcome,
             left_in_words(left)
         );
     }

@@ -3,6 +3,8 @@
 //! Only one cell is in memory at a time, beside what earlier ones found and the heads of all
 //! photographs: its views are read anew from the files.
 
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -15,6 +17,7 @@ use super::look::{self, FirstLook, Sightings, Site};
 use super::model_parts::{subset, walls_of};
 use super::seen_ground::SeenGround;
 use super::tile::{Cell, Tile};
+use super::work_plan::WorkPlan;
 use crate::base::error::{Error, Result};
 use crate::base::execution::Listener;
 use crate::base::ids::ViewId;
@@ -22,7 +25,8 @@ use crate::base::params::Params;
 use crate::orienting::orientation::{FileSource, InputFile};
 use crate::orienting::scene::{Scene, View};
 use crate::orienting::scene_loader::{
-    LoadOptions, PlannedScene, ShownArea, files_of_settling, finer_than, settled, whole_views,
+    LoadOptions, PlannedScene, ShownArea, finer_than, ground_files, ground_heights, settled_on,
+    whole_views,
 };
 use crate::pipeline::{Run, Stage, counted};
 use crate::planes::terrain::Ground;
@@ -34,18 +38,27 @@ use crate::roofs::walls::place_walls_of;
 pub struct Area {
     pub(super) whole: Scene,
     pub(super) options: LoadOptions,
+    /// Did the person state by how much photographs are reduced?
+    is_reduction_stated: bool,
+    /// Lowest and highest ground, metres, world frame, where it is known.
+    heights: Option<[f64; 2]>,
+    shown: Option<ShownArea>,
     pub(super) params: Params,
     pub(super) tiles: Vec<Tile>,
-    left_out: Vec<[f64; 4]>,
+    pub(super) left_out: Vec<[f64; 4]>,
     pub(super) look: FirstLook,
     /// What the squares show that were looked at, and how many those are.
     pub(super) seen: (Sightings, usize),
     /// What is connected of that.
-    sites: Vec<Site>,
+    pub(super) sites: Vec<Site>,
+    /// What the cells read, and the order in which they are worked off, after the look.
+    pub(super) work: WorkPlan,
     /// Sum of all that the tiles are made from, but for their cells.
     made_from: u32,
+    /// What the cells of the tile have found that is being worked off cell by cell.
+    pub(super) begun: WorkedTile,
     pub(super) parts: Vec<CellPart>,
-    pub(super) reports: Vec<TileReport>,
+    pub(super) reports: BTreeMap<usize, TileReport>,
     pub(super) first_error: Option<Error>,
 }
 
@@ -73,23 +86,53 @@ impl Area {
         tile_m: f64,
     ) -> Result<Self> {
         refuse_corrections(params)?;
-        let (options, divided, look) = divided(source, options, ground, (params, tile_m))?;
-        let Division {
-            tiles, left_out, ..
-        } = divided;
+        if options.apply_fix {
+            return Err(Error::Scene {
+                problem: "tiles take the orientation as it is".to_owned(),
+                advice: "correct the orientation file, or work off all at once (without --tile)"
+                    .to_owned(),
+            });
+        }
+        let stated = options.ground_z.map(|z| [z, z]);
+        let mut heights = stated.or(ground);
+        if heights.is_none() {
+            source.hold(&|files| ground_files(files, options))?;
+            heights = ground_heights(source.files(), options);
+            source.hold(&|_| Vec::new())?;
+        }
         let files = source.files();
-        Ok(Self {
-            made_from: sum_of(files, &options, params),
+        let mut settled = settled_on(files, options, heights);
+        let (divided, shown) = match options.roi {
+            Some(roi) => (Division::of_region(roi, tile_m)?, None),
+            None => {
+                let shown = ShownArea::new(files, &settled, heights)?;
+                (Division::of_shown(&shown, tile_m)?, Some(shown))
+            }
+        };
+        let Division {
+            area,
             tiles,
             left_out,
-            look,
+        } = divided;
+        settled.roi = Some(area);
+        let small = finer_than(look::LOOK_PIXEL_M, files, &settled, heights);
+        Ok(Self {
+            made_from: sum_of(files, &settled, params),
+            work: WorkPlan::unplanned(&tiles),
+            tiles,
+            left_out,
+            look: FirstLook::new(area, small, params)?,
             seen: (Sightings::default(), 0),
             sites: Vec::new(),
-            whole: whole_views(files, &options)?,
-            options,
+            whole: whole_views(files, &settled)?,
+            options: settled,
+            is_reduction_stated: options.reduction.is_some(),
+            heights,
+            shown,
             params: params.clone(),
+            begun: WorkedTile::default(),
             parts: Vec::new(),
-            reports: Vec::new(),
+            reports: BTreeMap::new(),
             first_error: None,
         })
     }
@@ -116,8 +159,7 @@ impl Area {
     /// may be. Before, they cover the area. An error says which photograph cannot be had.
     pub fn look(&mut self, source: &mut dyn FileSource, progress: &Listener) -> Result<()> {
         self.seen.0 = self.look.all(source, progress)?;
-        self.place_cells();
-        Ok(())
+        self.place_cells(source.files())
     }
 
     /// How many squares [`Self::look`] looks at.
@@ -144,20 +186,47 @@ impl Area {
         })
     }
 
-    /// Takes what the next square shows; after the last one the cells lie where a roof may be.
-    /// Refused where the bytes are not that.
-    pub fn take_look(&mut self, seen: &[u8]) -> Result<()> {
+    /// Takes what the next square shows; after the last one the cells lie where a roof may be. Of
+    /// the files their heads suffice. Refused where the bytes are not that.
+    pub fn take_look(&mut self, files: &[InputFile], seen: &[u8]) -> Result<()> {
         self.seen.0.add(Sightings::of_bytes(seen)?);
         self.seen.1 += 1;
-        if self.seen.1 == self.look.len() {
-            self.place_cells();
+        match self.seen.1 == self.look.len() {
+            true => self.place_cells(files),
+            false => Ok(()),
         }
+    }
+
+    /// Lays the cells where a roof may be, and plans what they read; photographs are reduced as far
+    /// as memory asks for, unless somebody states by how much.
+    fn place_cells(&mut self, files: &[InputFile]) -> Result<()> {
+        let area = self.options.roi.expect("an area has one");
+        let seen = &self.seen.0;
+        self.sites = seen.place_cells(&mut self.tiles, area);
+        if let Some(shown) = &self.shown {
+            // A region that lies mostly outside would choose views for what nobody sees.
+            let cells = self.tiles.iter_mut().flat_map(|tile| &mut tile.cells);
+            cells.for_each(|cell| cell.region = shown.part_of(cell.region));
+        }
+        let planned = |options: &LoadOptions| {
+            let laid = (&self.tiles[..], &self.sites[..]);
+            WorkPlan::new(files, options, self.heights, laid, &seen.ground)
+        };
+        self.work = planned(&self.options)?;
+        while let Some(reduction) = self.work.fitting(&self.options)
+            && !self.is_reduction_stated
+        {
+            self.options.reduction = Some(reduction);
+            self.work = planned(&self.options)?;
+        }
+        self.whole = whole_views(files, &self.options)?;
+        self.made_from = sum_of(files, &self.options, &self.params);
         Ok(())
     }
 
-    fn place_cells(&mut self) {
-        let area = self.options.roi.expect("an area has one");
-        self.sites = self.seen.0.place_cells(&mut self.tiles, area);
+    /// What the cells read and the order in which they are worked off, once all was looked at.
+    pub fn work(&self) -> &WorkPlan {
+        &self.work
     }
 
     /// Sum of all that the tiles are made from.
@@ -181,45 +250,43 @@ impl Area {
         )
     }
 
-    /// The reports of the tiles that are done.
-    pub fn reports(&self) -> &[TileReport] {
-        &self.reports
-    }
-
-    /// Works off the next tile; `None` when all are done. A tile that the views do not show is left
-    /// out; an error says which photograph cannot be had any more. `progress` hears fractions of
-    /// this tile's work.
+    /// Works off the next tile in their order, and says which; `None` when all are done. A tile that
+    /// the views do not show is left out; an error says which photograph cannot be had any more.
+    /// `progress` hears fractions of this tile's work.
     pub fn step(
         &mut self,
         source: &mut dyn FileSource,
         progress: &Listener,
-    ) -> Result<Option<&TileReport>> {
-        let Some(tile) = self.tiles.get(self.reports.len()) else {
+    ) -> Result<Option<(usize, &TileReport)>> {
+        let Some(&index) = self.work.order.get(self.reports.len()) else {
             return Ok(None);
         };
         let (options, params) = (&self.options, &self.params);
         let known = (&self.whole, &self.seen.0.ground);
+        let tile = &self.tiles[index];
         let worked = work_off(source, options, params, tile, known, progress)?;
+        let report = worked.report(tile);
         self.parts.extend(worked.parts);
         if let Some(error) = worked.first_error {
             self.first_error.get_or_insert(error);
         }
-        self.reports.push(worked.report);
-        Ok(self.reports.last())
+        Ok(Some((index, self.reports.entry(index).or_insert(report))))
     }
 
-    /// One model of all tiles, as files; the first error where no tile could be read. `seconds`
-    /// of each tile go into `report.json` and may be empty.
+    /// One model of all tiles, as files, whatever the order in which they were done; the first error
+    /// where no tile could be read. `seconds` of each tile go into `report.json` and may be empty.
     pub fn finish(mut self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
         let joined = self.join()?;
-        let done = (&self.sites[..], &self.reports[..]);
+        let reports: Vec<TileReport> = self.reports.into_values().collect();
+        let done = (&self.sites[..], &reports[..]);
         Ok(model_files(&joined, &self.params, done, seconds))
     }
 
     /// The same with 3D Tiles of a file for each square, so that a viewer fetches what it shows.
     pub fn finish_in_squares(mut self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
         let joined = self.join()?;
-        let done = (&self.sites[..], &self.reports[..]);
+        let reports: Vec<TileReport> = self.reports.into_values().collect();
+        let done = (&self.sites[..], &reports[..]);
         Ok(files_in_squares(
             &joined,
             &self.parts,
@@ -271,104 +338,105 @@ pub fn refuse_corrections(params: &Params) -> Result<()> {
     }
 }
 
-/// The tiles of the region of interest, or of the area that the views show, the options with all
-/// that is decided once for the whole area, and the first look at it; refused where the options do
-/// not go with tiles.
-pub(super) fn divided(
-    source: &mut dyn FileSource,
-    options: &LoadOptions,
-    ground: Option<[f64; 2]>,
-    (params, tile_m): (&Params, f64),
-) -> Result<(LoadOptions, Division, FirstLook)> {
-    if options.apply_fix {
-        return Err(Error::Scene {
-            problem: "tiles take the orientation as it is".to_owned(),
-            advice: "correct the orientation file, or work off all at once (without --tile)"
-                .to_owned(),
-        });
-    }
-    source.hold(&|files| files_of_settling(files, options))?;
-    let files = source.files();
-    let mut options = settled(files, options);
-    let divided = match options.roi {
-        Some(roi) => Division::of_region(roi, tile_m)?,
-        None => Division::of_shown(&ShownArea::new(files, &options, ground)?, tile_m)?,
-    };
-    options.roi = Some(divided.area);
-    let small = finer_than(look::LOOK_PIXEL_M, files, &options, ground);
-    let look = FirstLook::new(divided.area, small, params)?;
-    Ok((options, divided, look))
-}
-
 /// What is said of a tile without cells.
 pub(super) const NOTHING_SEEN: &str = "a first look shows nothing here that may be a roof";
 
-/// What became of a tile.
+/// What the cells of a tile have come to.
+#[derive(Clone, Debug, Default)]
 pub(super) struct WorkedTile {
-    pub report: TileReport,
+    /// The cell that is loaded and not worked off yet.
+    loaded: Option<Scene>,
     /// What was found in the cells that the views show.
     pub parts: Vec<CellPart>,
     /// Why the first of the others was left out.
     pub first_error: Option<Error>,
 }
 
-/// Works off the cells of a tile, one after the other: the photographs of one are whole until those
-/// of the next one are known. `whole` has all views. An error says which photograph cannot be had.
+impl WorkedTile {
+    /// Loads a cell with these options. An error says which photograph cannot be had.
+    pub(super) fn load(
+        &mut self,
+        source: &mut dyn FileSource,
+        options: &LoadOptions,
+    ) -> Result<()> {
+        let planned = PlannedScene::new(source, options)?;
+        match planned.load(source.files()) {
+            Ok(scene) => self.loaded = Some(scene),
+            Err(error) => {
+                self.first_error.get_or_insert(error);
+            }
+        }
+        source.hold(&|_| Vec::new())
+    }
+
+    /// Works off the cell that was loaded, if it could be. `whole` has all views.
+    pub(super) fn run(
+        &mut self,
+        params: &Params,
+        cell: &Cell,
+        (whole, ground): (&Scene, &SeenGround),
+        progress: &Listener,
+    ) {
+        if let Some(scene) = self.loaded.take() {
+            let ground = ground.within(cell.region, &scene.origin);
+            (self.parts).push(part(scene, params, (cell, ground), whole, progress));
+        }
+        progress(1.0);
+    }
+
+    pub(super) fn report(&self, tile: &Tile) -> TileReport {
+        let parts = self.parts.iter();
+        let buildings = parts.map(|part| part.model.buildings.len()).sum();
+        let outcome = match &self.first_error {
+            Some(error) if self.parts.is_empty() => error.to_string(),
+            _ if tile.cells.is_empty() => NOTHING_SEEN.to_owned(),
+            _ => counted(buildings, "buildings"),
+        };
+        TileReport {
+            core: tile.core,
+            outcome,
+            is_left_out: self.parts.is_empty() && self.first_error.is_some(),
+        }
+    }
+}
+
+/// The options with which a cell is loaded, on ground that a first look has shown.
+pub(super) fn options_of(cell: &Cell, options: &LoadOptions, ground: &SeenGround) -> LoadOptions {
+    LoadOptions {
+        roi: Some(cell.region),
+        ground_range: ground.range(cell.region),
+        ..options.clone()
+    }
+}
+
+/// Works off the cells of a tile, one after the other: the photographs of one are whole while it is
+/// loaded. `known` has all views, and the ground. An error says which photograph cannot be had.
 pub(super) fn work_off(
     source: &mut dyn FileSource,
     options: &LoadOptions,
     params: &Params,
     tile: &Tile,
-    (whole, ground): (&Scene, &SeenGround),
+    known: (&Scene, &SeenGround),
     progress: &Listener,
 ) -> Result<WorkedTile> {
-    let mut parts = Vec::new();
-    let mut first_error = None;
+    let mut worked = WorkedTile::default();
     let count = tile.cells.len() as f64;
     for (i, cell) in tile.cells.iter().enumerate() {
-        let options = LoadOptions {
-            roi: Some(cell.region),
-            ..options.clone()
-        };
         let of_tile = Listener::clone(progress);
         let listener: Listener = Arc::new(move |fraction| of_tile((i as f64 + fraction) / count));
-        let planned = PlannedScene::new(source, &options)?;
-        match planned.load(source.files()) {
-            Ok(scene) => {
-                let ground = ground.within(cell.region, &scene.origin);
-                parts.push(part(scene, params, (cell, ground), whole, &listener));
-            }
-            Err(error) => {
-                first_error.get_or_insert(error);
-            }
-        }
-        listener(1.0);
+        worked.load(source, &options_of(cell, options, known.1))?;
+        worked.run(params, cell, known, &listener);
     }
-    source.hold(&|_| Vec::new())?;
-    let buildings = parts.iter().map(|part| part.model.buildings.len()).sum();
-    let outcome = match &first_error {
-        Some(error) if parts.is_empty() => error.to_string(),
-        _ if tile.cells.is_empty() => NOTHING_SEEN.to_owned(),
-        _ => counted(buildings, "buildings"),
-    };
-    Ok(WorkedTile {
-        report: TileReport {
-            core: tile.core,
-            outcome,
-            is_left_out: parts.is_empty() && first_error.is_some(),
-        },
-        parts,
-        first_error,
-    })
+    Ok(worked)
 }
 
 /// Joins the parts of all cells in the order of the grid, whatever the tiles were.
 pub(super) fn join_cells(whole: Scene, parts: &mut [CellPart]) -> Joined {
-    let place = |part: &CellPart| part.cell.core;
-    parts.sort_by(|a, b| {
-        let ([ax, ay, ..], [bx, by, ..]) = (place(a), place(b));
-        ay.total_cmp(&by).then(ax.total_cmp(&bx))
-    });
+    let place = |part: &CellPart| {
+        let [x0, y0, x1, y1] = part.cell.core;
+        [y0, x0, y1, x1]
+    };
+    parts.sort_by(|a, b| place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal));
     join(whole, parts)
 }
 

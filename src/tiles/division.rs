@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::tile::{Tile, plan_tiles};
 use crate::base::error::{Error, Result};
 use crate::orienting::orientation::InputFile;
-use crate::orienting::scene_loader::{Flight, FlightOverview, LoadOptions, ShownArea, ViewWindow};
+use crate::orienting::scene_loader::{Flight, FlightOverview, LoadOptions, ShownArea};
 
 /// Why a square of an area without a stated region is left out.
 pub(super) const WHY_LEFT_OUT: &str = "fewer than three photographs show its ground";
@@ -72,8 +72,9 @@ impl Division {
 pub struct FlightPlan {
     /// All photographs, seen from above.
     pub overview: FlightOverview,
-    /// The tiles in the order in which they are worked off.
-    pub tiles: Vec<TilePlan>,
+    /// What the tiles are responsible for: x0, y0, x1, y1, metres, world frame. What they read is
+    /// known after a first look ([`WorkPlan`](super::WorkPlan)).
+    pub tiles: Vec<[f64; 4]>,
     /// What is left out of the area, neighbouring squares of a row as one: x0, y0, x1, y1, metres,
     /// world frame.
     pub left_out: Vec<[f64; 4]>,
@@ -83,22 +84,6 @@ pub struct FlightPlan {
     pub why_left_out: &'static str,
     /// Why there are no tiles; null where there are.
     pub problem: Option<String>,
-}
-
-/// A tile before it is worked off.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-pub struct TilePlan {
-    /// x0, y0, x1, y1, metres, world frame of the input.
-    pub core: [f64; 4],
-    /// The box of what its squares look at.
-    pub region: [f64; 4],
-    /// The views that it reads, and which part of each; none where it is left out.
-    pub views: Vec<ViewWindow>,
-    /// Memory that it takes at its peak, about, megabytes.
-    pub memory_mb: u64,
-    /// Why it is left out.
-    pub left_out: Option<String>,
 }
 
 impl FlightPlan {
@@ -113,7 +98,6 @@ impl FlightPlan {
         tile_m: f64,
     ) -> Result<Self> {
         let flight = Flight::new(files, options, ground)?;
-        let overview = flight.overview();
         let divided = match (options.roi, flight.shown()) {
             (Some(roi), _) => Division::of_region(roi, tile_m),
             (None, Some(shown)) => Division::of_shown(shown, tile_m),
@@ -135,11 +119,9 @@ impl FlightPlan {
             }) => (tiles, left_out, None),
             Err(error) => (Vec::new(), Vec::new(), Some(error.to_string())),
         };
-        let planned = |tile: &Tile| TilePlan::new(tile, &flight, &overview, files);
-        let tiles = tiles.iter().map(planned).collect();
         Ok(Self {
-            tiles,
-            overview,
+            tiles: tiles.iter().map(|tile| tile.core).collect(),
+            overview: flight.overview(),
             squares_left_out: left_out.len(),
             left_out: rows_of(left_out),
             why_left_out: WHY_LEFT_OUT,
@@ -161,52 +143,6 @@ fn rows_of(mut squares: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
         }
     }
     rows
-}
-
-impl TilePlan {
-    fn new(tile: &Tile, flight: &Flight, overview: &FlightOverview, files: &[InputFile]) -> Self {
-        // What is read of photographs beyond their heads: those of a tile are filled at once.
-        let filled_mb = |views: &[ViewWindow]| {
-            let read = |name: &str| -> u64 {
-                let own = views.iter().filter(|view| view.view == name);
-                own.map(|view| view.bytes).sum()
-            };
-            let filled = overview.footprints.iter().filter_map(|one| {
-                let file = files.iter().find(|file| file.path == one.path)?;
-                Some(read(&one.view).min(file.length() - file.head_length()))
-            });
-            filled.sum::<u64>() >> 20
-        };
-        let around = |a: [f64; 4], b: [f64; 4]| {
-            [
-                a[0].min(b[0]),
-                a[1].min(b[1]),
-                a[2].max(b[2]),
-                a[3].max(b[3]),
-            ]
-        };
-        let regions = tile.cells.iter().map(|cell| cell.region);
-        let mut planned = Self {
-            core: tile.core,
-            region: regions.reduce(around).unwrap_or(tile.core),
-            views: Vec::new(),
-            memory_mb: 0,
-            left_out: None,
-        };
-        for cell in &tile.cells {
-            match flight.windows(cell.region) {
-                Ok((views, memory_mb)) => {
-                    let unfilled = memory_mb.saturating_sub(filled_mb(&views));
-                    planned.memory_mb = planned.memory_mb.max(unfilled);
-                    planned.views.extend(views);
-                }
-                Err(error) => planned.left_out = planned.left_out.or(Some(error.to_string())),
-            }
-        }
-        planned.left_out = planned.left_out.filter(|_| planned.views.is_empty());
-        planned.memory_mb += filled_mb(&planned.views);
-        planned
-    }
 }
 
 #[cfg(test)]

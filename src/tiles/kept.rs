@@ -3,10 +3,9 @@
 //!
 //! Invariant: outcomes that were kept give the model of [`Area::step`], bit by bit.
 
-use super::area::{Area, TileReport, work_off};
+use super::area::{Area, TileReport, options_of};
 use super::join::join;
 use super::part_file::{PartKey, TileOutcome};
-use super::tile::Cell;
 use crate::base::error::{Error, Result};
 use crate::base::execution::Listener;
 use crate::orienting::orientation::InputFile;
@@ -14,30 +13,36 @@ use crate::orienting::scene_loader::LoadOptions;
 use crate::results::export::{atlas_jpeg, glb};
 
 impl Area {
-    /// The options with which the cells of a tile are loaded; `None` where there is no such tile.
-    pub fn options_of(&self, index: usize) -> Option<Vec<LoadOptions>> {
-        let options = |cell: &Cell| LoadOptions {
-            roi: Some(cell.region),
-            ..self.options.clone()
-        };
-        let tile = self.tiles.get(index)?;
-        Some(tile.cells.iter().map(options).collect())
+    /// The options with which a cell of a tile is loaded; `None` where there is none.
+    pub fn options_of(&self, index: usize, cell: usize) -> Option<LoadOptions> {
+        let cell = self.tiles.get(index)?.cells.get(cell)?;
+        Some(options_of(cell, &self.options, &self.seen.0.ground))
     }
 
-    /// Works off a tile: its outcome as bytes; `None` where there is no such tile.
-    pub fn work_off(
-        &self,
-        mut files: &[InputFile],
-        index: usize,
-        progress: &Listener,
-    ) -> Option<Vec<u8>> {
-        let tile = self.tiles.get(index)?;
-        let (options, params) = (&self.options, &self.params);
+    /// Loads a cell of a tile; `None` where there is none.
+    pub fn load(&mut self, mut files: &[InputFile], index: usize, cell: usize) -> Option<()> {
+        let options = self.options_of(index, cell)?;
+        let loaded = self.begun.load(&mut files, &options);
+        loaded.expect("files in memory can be had");
+        Some(())
+    }
+
+    /// Works off a cell of a tile that is loaded, the others of which have been worked off before;
+    /// [`Self::outcome_of`] has what all of them came to. `None` where there is none.
+    pub fn work_off(&mut self, index: usize, cell: usize, progress: &Listener) -> Option<()> {
+        let cell = self.tiles.get(index)?.cells.get(cell)?;
         let known = (&self.whole, &self.seen.0.ground);
-        let worked = work_off(&mut files, options, params, tile, known, progress)
-            .expect("files in memory can be had");
+        self.begun.run(&self.params, cell, known, progress);
+        Some(())
+    }
+
+    /// What the cells of a tile came to, which have been worked off, as bytes; `None` where there is
+    /// no such tile.
+    pub fn outcome_of(&mut self, index: usize) -> Option<Vec<u8>> {
+        let tile = self.tiles.get(index)?;
+        let worked = std::mem::take(&mut self.begun);
         let outcome = TileOutcome {
-            report: worked.report,
+            report: worked.report(tile),
             parts: worked.parts,
         };
         Some(self.key(index).pack(&outcome))
@@ -66,7 +71,7 @@ impl Area {
             });
         }
         self.parts.extend(parts);
-        self.reports.push(report);
+        self.reports.insert(self.reports.len(), report);
         Ok(())
     }
 
@@ -115,9 +120,15 @@ mod tests {
         let files = files();
         let mut planned = area(&files, 100.0);
         let kept: Vec<Vec<u8>> = (0..2)
-            .map(|tile| planned.work_off(&files, tile, &silent()).unwrap())
+            .map(|tile| {
+                planned.load(&files, tile, 0).unwrap();
+                planned.work_off(tile, 0, &silent()).unwrap();
+                planned.outcome_of(tile).unwrap()
+            })
             .collect();
-        assert_eq!(planned.work_off(&files, 2, &silent()), None);
+        assert_eq!(planned.load(&files, 1, 1), None);
+        assert_eq!(planned.work_off(2, 0, &silent()), None);
+        assert_eq!(planned.outcome_of(2), None);
         let (report, model) = planned.outcome(0, &kept[0]).unwrap();
         assert!(report.outcome.contains("seen by 0 views"), "{report:?}");
         assert_eq!(model, None);
@@ -139,5 +150,36 @@ mod tests {
         }
         let nothing = refusal(planned.finish(&[]).unwrap_err());
         assert!(nothing.contains("no tile could be read"), "{nothing}");
+    }
+
+    #[test]
+    fn the_order_of_tiles_does_not_change_the_model() {
+        let (scene, truth) = gable_scene(96);
+        let files: Vec<InputFile> = (to_files(&scene).into_iter())
+            .map(|(path, bytes)| InputFile::new(&path, bytes))
+            .collect();
+        let [x, y, z] = scene.origin.into();
+        let options = LoadOptions {
+            orientation: Some("colmap".to_owned()),
+            roi: Some([x - 31.0, y - 31.0, x + 31.0, y + 31.0]),
+            ground_z: Some(z + truth.ground_z),
+            ..LoadOptions::default()
+        };
+        let params = crate::base::params::Params::default();
+        let model = |turned: bool| {
+            let mut files = &files[..];
+            let mut area = Area::plan(&mut files, &options, None, &params, 60.0).unwrap();
+            if turned {
+                area.work.order.reverse();
+            }
+            let mut tiles = Vec::new();
+            while let Some((tile, _)) = area.step(&mut files, &silent()).unwrap() {
+                tiles.push(tile);
+            }
+            (tiles, area.finish(&[]).unwrap())
+        };
+        let ((tiles, expected), (turned, found)) = (model(false), model(true));
+        assert!(tiles.len() > 1 && tiles.iter().eq(turned.iter().rev()));
+        assert!(found == expected);
     }
 }

@@ -566,10 +566,10 @@ mod tests {
         // Square by square, as the page looks.
         for square in 0..area.squares_to_look_at() {
             let seen = area.look_at(&files, square, &silent()).unwrap();
-            area.take_look(&seen).unwrap();
+            area.take_look(&files, &seen).unwrap();
         }
         let words = area.seen_in_words();
-        let report = area.step(&mut source, &silent()).unwrap().unwrap();
+        let (_, report) = area.step(&mut source, &silent()).unwrap().unwrap();
         (report.outcome.clone(), words)
     }
 

@@ -11,6 +11,7 @@
 //! kept         outcomes of its tiles as bytes, to go on from
 //! fields       what the bytes of a part hold beyond what its types write by themselves
 //! part_file    a part as a file: whose it is, and whether it is whole
+//! work_plan    what the cells read, and the order in which tiles are worked off
 //! plan         the tiles of a block as a file, for many machines
 //! ```
 //!
@@ -35,10 +36,12 @@ mod part_file;
 mod plan;
 mod seen_ground;
 mod tile;
+mod work_plan;
 
 pub use area::{Area, TileReport, refuse_corrections};
-pub use division::{FlightPlan, TilePlan};
+pub use division::FlightPlan;
 pub use join::{CellPart, Joined, join};
 pub use look::Site;
-pub use plan::{BlockPlan, BlockSource, HeadStamp, InputStamp, PlannedCell, PlannedTile};
+pub use plan::{BlockPlan, BlockSource, HeadStamp, InputStamp};
 pub use tile::{CELL_M, Cell, MARGIN_M, Tile, plan_tiles};
+pub use work_plan::{PlannedCell, PlannedTile, WorkPlan};

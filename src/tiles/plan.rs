@@ -15,27 +15,22 @@ use std::io::{self, Read};
 use image::ImageFormat;
 use serde::{Deserialize, Serialize};
 
-use super::area::{divided, files_in_squares, join_cells, refuse_corrections, work_off};
+use super::area::{Area, files_in_squares, join_cells, work_off};
 use super::division::Division;
 use super::join::Joined;
 use super::look::Site;
 use super::part_file::{PartKey, TileOutcome};
 use super::seen_ground::SeenGround;
-use super::tile::{Cell, Tile};
+use super::tile::Tile;
+use super::work_plan::PlannedTile;
 use crate::base::error::{Error, Result};
 use crate::base::execution::Listener;
 use crate::base::execution::progress::silent;
 use crate::base::params::Params;
 use crate::orienting::orientation::{BLOCK_BYTES, FileSource, InputFile, Needed};
-use crate::orienting::scene_loader::{
-    LoadOptions, ViewWindow, files_of_ground, region_windows, whole_views,
-};
+use crate::orienting::scene_loader::{LoadOptions, whole_views};
 use crate::photographs::raster::image_format;
 use crate::results::export::city_json_seq;
-
-/// Cells that are planned at the same time. Assumption: enough for the cores of a machine, and few
-/// enough for its memory, since neighbours measure the ground in the same photographs.
-const CELLS_AT_A_TIME: usize = 8;
 
 /// Where the files of a block came from, as it was stated: to find them again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -183,35 +178,6 @@ impl FileSource for Compared<'_> {
     }
 }
 
-/// A tile of a plan.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PlannedTile {
-    /// Its number, from 1.
-    pub tile: u32,
-    /// What it is responsible for: x0, y0, x1, y1, metres, world frame of the input.
-    pub core: [f64; 4],
-    /// Memory that it takes at its peak, about, megabytes; 0 where the views show none of it.
-    pub memory_mb: u64,
-    /// The squares that are reconstructed one after the other.
-    pub cells: Vec<PlannedCell>,
-}
-
-/// A cell of a tile.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PlannedCell {
-    /// What it is responsible for, and what it looks at.
-    pub place: Cell,
-    /// Memory that it takes at its peak, about, megabytes.
-    pub memory_mb: u64,
-    /// The views that it reads, and which part of each; none where it is left out.
-    pub views: Vec<ViewWindow>,
-    /// Why it is left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub left_out: Option<String>,
-}
-
 /// A block divided into tiles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -256,23 +222,19 @@ impl BlockPlan {
         params: &Params,
         tile_m: f64,
     ) -> Result<Self> {
-        refuse_corrections(params)?;
-        let (options, mut divided, look) = divided(files, options, None, (params, tile_m))?;
-        whole_views(files.files(), &options)?;
-        let seen = look.all(files, &silent())?;
-        let sites = seen.place_cells(&mut divided.tiles, divided.area);
-        let planned = planned(files, &options, &divided.tiles)?;
+        let mut area = Area::plan(files, options, None, params, tile_m)?;
+        area.look(files, &silent())?;
         Ok(Self {
             ridgeline: env!("CARGO_PKG_VERSION").to_owned(),
             source,
             tile_m,
-            options,
-            params: params.clone(),
+            options: area.options,
+            params: area.params,
             inputs,
-            tiles: planned,
-            left_out: divided.left_out,
-            sites,
-            ground: seen.ground,
+            tiles: area.work.tiles,
+            left_out: area.left_out,
+            sites: area.sites,
+            ground: area.seen.0.ground,
         })
     }
 
@@ -359,9 +321,10 @@ impl BlockPlan {
         let (options, params) = (&self.options, &self.params);
         let known = (&whole, &self.ground);
         let worked = work_off(&mut files, options, params, &place, known, progress)?;
-        let words = worked.report.outcome.clone();
+        let report = worked.report(&place);
+        let words = report.outcome.clone();
         let outcome = TileOutcome {
-            report: worked.report,
+            report,
             parts: worked.parts,
         };
         Ok((key(text, tile).pack(&outcome), words))
@@ -444,61 +407,6 @@ impl BlockPlan {
 fn key(plan: &[u8], tile: u32) -> PartKey {
     let plan = crc32fast::hash(plan);
     PartKey { plan, tile }
-}
-
-/// The tiles with what each of their cells reads.
-fn planned(
-    source: &mut dyn FileSource,
-    options: &LoadOptions,
-    tiles: &[Tile],
-) -> Result<Vec<PlannedTile>> {
-    let all: Vec<Cell> = tiles.iter().flat_map(|tile| tile.cells.clone()).collect();
-    let mut cells = Vec::new();
-    // The photographs that show the ground of so many cells are whole at a time.
-    for some in all.chunks(CELLS_AT_A_TIME) {
-        source.hold(&|files| {
-            let of_cell =
-                |_: usize, cell: &Cell| files_of_ground(files, &options_of(cell, options));
-            let needed = crate::base::execution::map(some, of_cell);
-            Needed::merged(needed.into_iter().flatten(), files)
-        })?;
-        let files = source.files();
-        let of_cell = |_: usize, cell: &Cell| planned_cell(files, options, cell);
-        cells.extend(crate::base::execution::map(some, of_cell));
-    }
-    source.hold(&|_| Vec::new())?;
-    let mut cells = cells.into_iter();
-    let tile = |(index, tile): (usize, &Tile)| {
-        let cells: Vec<PlannedCell> = cells.by_ref().take(tile.cells.len()).collect();
-        PlannedTile {
-            tile: u32::try_from(index + 1).expect("fewer than 2^32 tiles"),
-            core: tile.core,
-            memory_mb: cells.iter().map(|cell| cell.memory_mb).max().unwrap_or(0),
-            cells,
-        }
-    };
-    Ok(tiles.iter().enumerate().map(tile).collect())
-}
-
-fn options_of(cell: &Cell, options: &LoadOptions) -> LoadOptions {
-    LoadOptions {
-        roi: Some(cell.region),
-        ..options.clone()
-    }
-}
-
-fn planned_cell(files: &[InputFile], options: &LoadOptions, cell: &Cell) -> PlannedCell {
-    let windows = region_windows(files, &options_of(cell, options));
-    let (views, memory_mb, left_out) = match windows {
-        Ok((views, memory_mb)) => (views, memory_mb, None),
-        Err(error) => (Vec::new(), 0, Some(error.to_string())),
-    };
-    PlannedCell {
-        place: *cell,
-        memory_mb,
-        views,
-        left_out,
-    }
 }
 
 /// The refusal of parts that are not there.

@@ -64,6 +64,17 @@ impl SeenGround {
         };
         Ground::laid([x0 - dx, y0 - dy, x1, y1], Ground::BLOCK_M, z, None)
     }
+
+    /// Its lowest and highest height in a box of the world, metres, world frame; `None` where
+    /// [`Self::within`] knows no ground.
+    pub(super) fn range(&self, region: [f64; 4]) -> Option<[f64; 2]> {
+        self.within(region, &Vector3::zeros())?;
+        let known = blocks_in(region).filter_map(|block| self.0.get(&block).copied());
+        let [low, high] = known.fold([i32::MAX, i32::MIN], |[low, high], cm| {
+            [low.min(cm), high.max(cm)]
+        });
+        Some([low, high].map(|cm| 0.01 * f64::from(cm)))
+    }
 }
 
 impl From<SeenGround> for Vec<Row> {
@@ -135,6 +146,8 @@ mod tests {
         let origin = Vector3::zeros();
         assert!(slope().within([0.0, -20.0, 60.0, 20.0], &origin).is_some());
         assert!(slope().within([30.0, -20.0, 60.0, 20.0], &origin).is_none());
+        assert_eq!(slope().range([30.0, -20.0, 60.0, 20.0]), None);
+        assert_eq!(slope().range([-9.0, -20.0, 12.0, 4.0]), Some([9.25, 11.25]));
     }
 
     #[test]

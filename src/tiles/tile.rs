@@ -41,6 +41,7 @@ pub struct Tile {
 /// A part of the area that is reconstructed by itself: x0, y0, x1, y1 in metres, world frame of the
 /// input.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(deny_unknown_fields)]
 pub struct Cell {
     /// What it is responsible for, as far as it lies in the area: a square of the grid, or around

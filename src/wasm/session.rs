@@ -336,6 +336,7 @@ pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         roi: options.roi,
         max_views: options.max_views,
         ground_z: options.ground_z,
+        ground_range: None,
         reduction: options.reduction,
         terrain: options.terrain,
         terrain_accuracy_m: options.terrain_accuracy_m,

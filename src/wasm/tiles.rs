@@ -72,16 +72,16 @@ impl Session {
         to_js(&ground_heights(&self.files, &load_options(&options)?))
     }
 
-    /// The tiles of `planFlight` with the same arguments, to be worked off: their cores, x0, y0,
-    /// x1, y1 each. `heights` are those of its overview; null measures them in files that are
-    /// whole. Results of an earlier run are dropped.
-    #[wasm_bindgen(js_name = planTiles, unchecked_return_type = "[x0: number, y0: number, x1: number, y1: number][]")]
+    /// The tiles of `planFlight` with the same arguments, to be worked off. `heights` are those of
+    /// its overview; null measures them in files that are whole. Results of an earlier run are
+    /// dropped.
+    #[wasm_bindgen(js_name = planTiles)]
     pub fn plan_tiles(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
         tile_m: f64,
         #[wasm_bindgen(unchecked_param_type = "[number, number] | null")] heights: JsValue,
-    ) -> Result<JsValue, JsValue> {
+    ) -> Result<(), JsValue> {
         self.run = None;
         self.merged = MergedShards::default();
         self.outputs = None;
@@ -90,8 +90,8 @@ impl Session {
         let heights: Option<[f64; 2]> = from_js(&heights, "heights")?;
         let mut files = &self.files[..];
         let area = Area::plan(&mut files, &options, heights, &self.params, tile_m);
-        let area = self.area.insert(area.map_err(|e| input_error(&e))?);
-        to_js(&area.tiles().iter().map(|t| t.core).collect::<Vec<_>>())
+        self.area = Some(area.map_err(|e| input_error(&e))?);
+        Ok(())
     }
 
     /// How many squares of the area are looked at before its tiles are worked off: the tiles then
@@ -105,14 +105,14 @@ impl Session {
     #[wasm_bindgen(js_name = groundFilesOfLook, unchecked_return_type = "LackingFile[]")]
     pub fn ground_files_of_look(&self, index: usize) -> Result<JsValue, JsValue> {
         let options = self.planned()?.options_of_look(index);
-        self.lacking_of(options.map(|one| vec![one]), files_of_ground)
+        self.lacking_of(options, files_of_ground)
     }
 
     /// The photographs that a look makes views of, once the others are filled.
     #[wasm_bindgen(js_name = viewFilesOfLook, unchecked_return_type = "LackingFile[]")]
     pub fn view_files_of_look(&self, index: usize) -> Result<JsValue, JsValue> {
         let options = self.planned()?.options_of_look(index);
-        self.lacking_of(options.map(|one| vec![one]), files_of_views)
+        self.lacking_of(options, files_of_views)
     }
 
     /// What a square shows at a first look, as bytes, to be kept; `takeLook` goes on from it.
@@ -131,33 +131,55 @@ impl Session {
     #[wasm_bindgen(js_name = takeLook)]
     pub fn take_look(&mut self, seen: &[u8]) -> Result<(), JsValue> {
         let area = self.area.as_mut().ok_or_else(not_planned)?;
-        area.take_look(seen).map_err(|e| input_error(&e))
+        let taken = area.take_look(&self.files, seen);
+        taken.map_err(|e| input_error(&e))
     }
 
-    /// The photographs that a tile needs first, to measure the ground: to be filled.
-    #[wasm_bindgen(js_name = groundFilesOfTile, unchecked_return_type = "LackingFile[]")]
-    pub fn ground_files_of_tile(&self, index: usize) -> Result<JsValue, JsValue> {
-        self.lacking_of(self.planned()?.options_of(index), files_of_ground)
+    /// What the cells of the tiles read and the order in which tiles are to be worked off, once all
+    /// squares were looked at.
+    #[wasm_bindgen(js_name = workPlan, unchecked_return_type = "WorkPlan")]
+    pub fn work_plan(&self) -> Result<JsValue, JsValue> {
+        to_js(self.planned()?.work())
     }
 
-    /// The photographs that a tile makes views of, once the others are filled.
-    #[wasm_bindgen(js_name = viewFilesOfTile, unchecked_return_type = "LackingFile[]")]
-    pub fn view_files_of_tile(&self, index: usize) -> Result<JsValue, JsValue> {
-        self.lacking_of(self.planned()?.options_of(index), files_of_views)
+    /// The photographs that a cell of a tile needs first, to measure the ground: to be filled.
+    #[wasm_bindgen(js_name = groundFilesOfCell, unchecked_return_type = "LackingFile[]")]
+    pub fn ground_files_of_cell(&self, index: usize, cell: usize) -> Result<JsValue, JsValue> {
+        self.lacking_of(self.planned()?.options_of(index, cell), files_of_ground)
     }
 
-    /// Works off a tile: its outcome as bytes, to be kept. `tileModel` shows it, `takeTile` goes on
-    /// from it.
-    #[wasm_bindgen(js_name = runTile, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
-    pub fn run_tile(
-        &self,
+    /// The photographs that a cell makes views of, once the others are filled.
+    #[wasm_bindgen(js_name = viewFilesOfCell, unchecked_return_type = "LackingFile[]")]
+    pub fn view_files_of_cell(&self, index: usize, cell: usize) -> Result<JsValue, JsValue> {
+        self.lacking_of(self.planned()?.options_of(index, cell), files_of_views)
+    }
+
+    /// Loads a cell of a tile, from the first on; its photographs may be left then.
+    #[wasm_bindgen(js_name = loadCell)]
+    pub fn load_cell(&mut self, index: usize, cell: usize) -> Result<(), JsValue> {
+        let area = self.area.as_mut().ok_or_else(not_planned)?;
+        area.load(&self.files, index, cell).ok_or_else(no_tile)
+    }
+
+    /// Works off the cell that was loaded.
+    #[wasm_bindgen(js_name = runCell)]
+    pub fn run_cell(
+        &mut self,
         index: usize,
+        cell: usize,
         #[wasm_bindgen(unchecked_param_type = "(fraction: number) => void")] on_progress: &Function,
-    ) -> Result<Vec<u8>, JsValue> {
-        let done = self
-            .planned()?
-            .work_off(&self.files, index, &listener_of(on_progress));
+    ) -> Result<(), JsValue> {
+        let area = self.area.as_mut().ok_or_else(not_planned)?;
+        let done = area.work_off(index, cell, &listener_of(on_progress));
         done.ok_or_else(no_tile)
+    }
+
+    /// The outcome of a tile whose cells are worked off as bytes, to be kept. `tileModel` shows it,
+    /// `takeTile` goes on from it.
+    #[wasm_bindgen(js_name = tileOutcome, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
+    pub fn tile_outcome(&mut self, index: usize) -> Result<Vec<u8>, JsValue> {
+        let area = self.area.as_mut().ok_or_else(not_planned)?;
+        area.outcome_of(index).ok_or_else(no_tile)
     }
 
     /// What a tile came to, and its model; refused where the bytes are not its outcome.
@@ -183,15 +205,13 @@ impl Session {
         Ok(())
     }
 
-    /// The photographs that are not whole among those that are needed to load all of these.
+    /// The photographs that are not whole among those that are needed to load this.
     fn lacking_of(
         &self,
-        loaded: Option<Vec<LoadOptions>>,
+        loaded: Option<LoadOptions>,
         needed: fn(&[InputFile], &LoadOptions) -> Vec<Needed>,
     ) -> Result<JsValue, JsValue> {
-        let loaded = loaded.ok_or_else(no_tile)?;
-        let needed = loaded.iter().flat_map(|one| needed(&self.files, one));
-        self.lacking(&Needed::merged(needed, &self.files))
+        self.lacking(&needed(&self.files, &loaded.ok_or_else(no_tile)?))
     }
 
     fn planned(&self) -> Result<&Area, JsValue> {

@@ -76,12 +76,16 @@ function prepareHelpers(stage, views, earlier) {
 }
 
 function runTiles(session, tileM) {
-    const tiles = session.planTiles(options, tileM, null);
+    session.planTiles(options, tileM, null);
     for (let square = 0; square < session.squaresToLookAt(); square += 1) {
         session.takeLook(session.lookAt(square, () => {}));
     }
-    for (const index of tiles.keys()) {
-        session.takeTile(session.runTile(index, () => {}));
+    for (const [index, { cells }] of session.workPlan().tiles.entries()) {
+        for (const cell of cells.keys()) {
+            session.loadCell(index, cell);
+            session.runCell(index, cell, () => {});
+        }
+        session.takeTile(session.tileOutcome(index));
     }
     session.joinTiles();
     for (const name of session.exportNames()) session.exportFile(name);

@@ -1,8 +1,10 @@
-//! The page and the command line divide a flight into the same squares, and leave out the same.
+//! The page and the command line divide a flight into the same squares, leave out the same, and plan
+//! the same work.
 
 use std::fmt::Write as _;
 use std::io::Cursor;
 
+use ridgeline::base::execution::progress::silent;
 use ridgeline::base::params::Params;
 use ridgeline::orienting::orientation::InputFile;
 use ridgeline::orienting::scene_loader::{LoadOptions, ground_heights};
@@ -47,19 +49,23 @@ fn square_metres(boxes: &[[f64; 4]]) -> f64 {
     boxes.iter().map(|[a, b, c, d]| (c - a) * (d - b)).sum()
 }
 
-fn of_command_line(files: &[InputFile], options: &LoadOptions, tile_m: f64) -> Divided {
+fn planned(mut files: &[InputFile], options: &LoadOptions, tile_m: f64) -> BlockPlan {
     let source = BlockSource {
         scene: String::new(),
         orientation: None,
         known: Vec::new(),
     };
-    let mut files = files;
     let params = Params::default();
     let plan = BlockPlan::new(source, &mut files, Vec::new(), options, &params, tile_m).unwrap();
     assert_eq!(
         BlockPlan::from_json(&plan.to_json().unwrap()).unwrap(),
         plan
     );
+    plan
+}
+
+fn of_command_line(files: &[InputFile], options: &LoadOptions, tile_m: f64) -> Divided {
+    let plan = planned(files, options, tile_m);
     let tiles = plan.tiles.iter().map(|t| t.core).collect();
     (tiles, plan.left_out.len(), square_metres(&plan.left_out))
 }
@@ -76,10 +82,10 @@ fn of_page(
     let mut source = files;
     let heights = Some(plan.overview.heights);
     let area = Area::plan(&mut source, options, heights, &Params::default(), tile_m).unwrap();
-    let cores: Vec<[f64; 4]> = plan.tiles.iter().map(|t| t.core).collect();
     let worked_off: Vec<[f64; 4]> = area.tiles().iter().map(|t| t.core).collect();
-    assert_eq!(cores, worked_off);
-    (cores, plan.squares_left_out, square_metres(&plan.left_out))
+    assert_eq!(plan.tiles, worked_off);
+    let left_out_m2 = square_metres(&plan.left_out);
+    (plan.tiles, plan.squares_left_out, left_out_m2)
 }
 
 #[test]
@@ -117,13 +123,6 @@ fn a_stated_region_has_all_its_squares() {
     let all = of_page(&files, &region, None, 60.0);
     assert_eq!((all.0.len(), all.1), (25, 0));
     assert_eq!(all, of_command_line(&files, &region, 60.0));
-    // What no three photographs show says so.
-    let plan = FlightPlan::new(&files, &region, None, 60.0).unwrap();
-    let unseen = plan.tiles.iter().filter_map(|tile| tile.left_out.as_ref());
-    assert!(unseen.clone().count() >= 9);
-    for why in unseen {
-        assert!(why.contains("three are needed"), "{why}");
-    }
 }
 
 #[test]
@@ -151,4 +150,34 @@ fn measured_ground_gives_the_same_tiles() {
     );
     // The page measures at whatever size it uses the photographs.
     assert_eq!(ground_heights(&files, &options(None, Some(2.0))), ground);
+}
+
+#[test]
+fn the_page_works_on_the_cells_of_the_command_line_within_its_memory() {
+    let files: Vec<InputFile> = (crate::common::synthetic_files().into_iter())
+        .map(|(path, bytes)| InputFile::new(&path, bytes))
+        .collect();
+    let params = Params::default();
+    for memory_mb in [None, Some(40)] {
+        let options = LoadOptions {
+            memory_mb,
+            ..options(None, None)
+        };
+        let heights = ground_heights(&files, &options);
+        let mut area = Area::plan(&mut &files[..], &options, heights, &params, 60.0).unwrap();
+        for square in 0..area.squares_to_look_at() {
+            let seen = area.look_at(&files, square, &silent()).unwrap();
+            area.take_look(&files, &seen).unwrap();
+        }
+        let plan = planned(&files, &options, 60.0);
+        let work = area.work();
+        assert_eq!(work.tiles, plan.tiles);
+        assert_eq!(Some(work.reduction), plan.options.reduction);
+        let most = work.tiles.iter().map(|tile| tile.memory_mb).max();
+        assert!(most > Some(20) && most <= memory_mb.map(u64::from).or(Some(1000)));
+        assert_eq!(work.reduction > 1.0, memory_mb.is_some());
+        let mut order = work.order.clone();
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..work.tiles.len()));
+    }
 }

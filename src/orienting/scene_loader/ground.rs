@@ -37,11 +37,10 @@ const SMALL_PHOTOGRAPH_PX: u64 = 4_000_000;
 pub(crate) fn plan_scene(files: &[InputFile], options: &LoadOptions) -> Plan {
     let options = &settled(files, options);
     let plan = Plan::new(files, options, None);
-    let measured = match (options.roi, options.ground_z) {
-        (Some(roi), None) if plan.is_chosen => {
-            heights_near(files, &whole_plan(files, options), Some(middle_of(roi)))
-        }
-        _ => None,
+    let is_known = options.ground_z.is_some() || options.ground_range.is_some();
+    let measured = match options.roi.filter(|_| plan.is_chosen && !is_known) {
+        Some(roi) => heights_near(files, &whole_plan(files, options), Some(middle_of(roi))),
+        None => None,
     };
     match measured {
         Some(heights) => Plan::new(files, options, Some(heights)),
@@ -61,17 +60,34 @@ pub fn settled(files: &[InputFile], options: &LoadOptions) -> LoadOptions {
     }
 }
 
+/// The same on ground between these heights, metres, world frame of the input, where they are
+/// known.
+pub fn settled_on(
+    files: &[InputFile],
+    options: &LoadOptions,
+    ground: Option<[f64; 2]>,
+) -> LoadOptions {
+    let reduction = options.reduction.unwrap_or_else(|| {
+        let whole = unreduced_plan(files, options);
+        ground.map_or(1.0, |[low, high]| {
+            reduction_on(&whole, 0.5 * (low + high) - whole.origin.z)
+        })
+    });
+    LoadOptions {
+        reduction: Some(reduction),
+        ..options.clone()
+    }
+}
+
 /// The options with photographs that are reduced as far as their pixels stay finer than this on the
 /// ground, metres, and no less than before. `ground` has its lowest and highest height where they
-/// were measured, metres, world frame of the input.
+/// are known, metres, world frame of the input.
 pub fn finer_than(
     pixel_m: f64,
     files: &[InputFile],
     options: &LoadOptions,
     ground: Option<[f64; 2]>,
 ) -> LoadOptions {
-    let stated = options.ground_z.map(|z| [z, z]);
-    let ground = stated.or(ground).or_else(|| ground_heights(files, options));
     let plan = unreduced_plan(files, options);
     let cameras = plan.views.iter().map(|view| &view.whole);
     let whole = ground
@@ -110,16 +126,16 @@ fn reduction(files: &[InputFile], options: &LoadOptions) -> f64 {
     if are_small(&whole) {
         return 1.0;
     }
-    let Some(z) = ground_height(files, options, &whole) else {
-        return 1.0;
-    };
-    let cameras = whole.views.iter().map(|view| &view.whole);
-    pixel_in_the_middle(cameras, z).map_or(1.0, reduction_of)
+    let z = ground_height(files, options, &whole);
+    z.map_or(1.0, |z| reduction_on(&whole, z))
 }
 
-/// The largest factor that leaves pixels of this size on the ground, metres, fine enough.
-pub(crate) fn reduction_of(pixel_m: f64) -> f64 {
-    reduction_to(FINEST_PIXEL_M, pixel_m)
+/// The largest factor that leaves pixels as fine as roofs need on ground of this height, metres,
+/// local frame; 1 where the photographs are small.
+pub(crate) fn reduction_on(whole: &Plan, z: f64) -> f64 {
+    let cameras = whole.views.iter().map(|view| &view.whole);
+    let pixel_m = pixel_in_the_middle(cameras, z).filter(|_| !are_small(whole));
+    pixel_m.map_or(1.0, |pixel_m| reduction_to(FINEST_PIXEL_M, pixel_m))
 }
 
 /// The largest factor that leaves pixels finer than `to_m` of pixels of this size, metres; in
@@ -165,9 +181,8 @@ pub fn ground_files(files: &[InputFile], options: &LoadOptions) -> Vec<Needed> {
     files_near(&unreduced_plan(files, options), None)
 }
 
-/// What is needed of the files in whose pixels [`settled`] and
-/// [`ShownArea`](super::ShownArea) measure the height of the ground: none where nothing is open. Of
-/// the files their heads suffice.
+/// What is needed of the files in whose pixels [`settled`] measures the height of the ground: none
+/// where nothing is open. Of the files their heads suffice.
 pub fn files_of_settling(files: &[InputFile], options: &LoadOptions) -> Vec<Needed> {
     let is_settled = options.reduction.is_some() && options.roi.is_some();
     if options.ground_z.is_some() || is_settled {
@@ -184,7 +199,7 @@ pub fn files_of_settling(files: &[InputFile], options: &LoadOptions) -> Vec<Need
 /// decides by how much photographs are reduced, and before it chooses views: none where both are
 /// known. Of the files their heads suffice. Flights state the first: see [`settled`].
 pub fn files_of_ground(files: &[InputFile], options: &LoadOptions) -> Vec<Needed> {
-    if options.ground_z.is_some() {
+    if options.ground_z.is_some() || options.ground_range.is_some() {
         return Vec::new();
     }
     let whole = whole_plan(files, options);

@@ -18,6 +18,10 @@ pub struct LoadOptions {
     pub max_views: Option<usize>,
     /// Height of the ground, metres, world frame of the input.
     pub ground_z: Option<f64>,
+    /// Lowest and highest ground of the region of interest, metres, world frame of the input, where
+    /// it is known already: it is not measured in photographs then.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ground_range: Option<[f64; 2]>,
     /// Path of the terrain model among the files; the only one among them when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub terrain: Option<String>,
@@ -46,7 +50,7 @@ pub struct LoadOptions {
     /// [`load_scene`](super::load_scene)).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reduction: Option<f64>,
-    /// Memory that may be taken, megabytes; 1500 in the browser and 32768 elsewhere when absent.
+    /// Memory that may be taken, megabytes; 1200 in the browser and 32768 elsewhere when absent.
     pub memory_mb: Option<u32>,
     /// Correct the error in the orientation that the images reveal, instead of refusing the scene.
     pub apply_fix: bool,

@@ -46,14 +46,15 @@ pub use archive::unpack;
 pub use candidate::OrientationCandidate;
 pub use ground::{
     files_of_ground, files_of_settling, files_of_views, finer_than, ground_files, ground_heights,
-    settled,
+    settled, settled_on,
 };
 pub use input::LoadOptions;
 pub use inspect::{
     FileReport, Flight, FlightOverview, Footprint, GroundSource, ImageReport, Inspection, Overlap,
-    ShownArea, ViewWindow, inspect_files, region_windows,
+    ShownArea, ViewWindow, inspect_files,
 };
 pub use load::{PlannedScene, load_scene, whole_views};
+pub(crate) use memory::limit_mb;
 #[cfg(target_arch = "wasm32")]
 pub(crate) use project::SHOWN;
 pub use project::{Project, open_project};

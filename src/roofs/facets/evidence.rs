@@ -22,20 +22,19 @@ pub(super) struct CellEvidence {
     pub weight: f64,
     /// Sum of weight x correlation over the area.
     pub correlation: f64,
-    /// Sum of what the windows say of the plane over the area, nats: windows a metre apart are
-    /// independent.
-    pub nats: f64,
-    /// Sum of the single-view evidence over the area, nats: at most one a square metre.
-    pub single_view: f64,
-    /// Sum of what a point cloud says of the plane over the area, nats.
-    pub cloud: f64,
+    /// What the plane costs in the cell, nats, where nothing speaks for the ground.
+    pub cost: f64,
 }
 
-impl CellEvidence {
-    /// What the plane costs in the cell, nats, where nothing speaks for the ground.
-    fn cost(&self) -> f64 {
-        -self.nats - self.single_view - self.cloud
-    }
+/// What speaks for one plane in one cell, summed over the area, nats.
+#[derive(Clone, Copy, Debug, Default)]
+struct CellSums {
+    /// What the windows say of the plane: windows a metre apart are independent.
+    windows: f64,
+    /// The single-view evidence: at most one a square metre.
+    single_view: f64,
+    /// What a point cloud says of the plane.
+    cloud: f64,
 }
 
 /// The evidence for every plane in every cell that it may cover.
@@ -65,22 +64,35 @@ impl PlaneEvidence {
             Some(map) => ground_evidence(map, windows, &raster, arrangement.cells),
             None => vec![0.0; arrangement.cells],
         };
+        let samples = samples_of_cells(&raster, arrangement.cells);
+        let sample_m2 = grid.step * grid.step;
         let per_group = crate::base::execution::map_part(hypotheses, 0.9..1.0, |_, h| {
             let of_cloud = cloud.map(|cloud| cloud.of(&h.group.plane));
             let places = (raster.as_slice(), arrangement.cells);
-            sum_over_cells(h, windows, places, grid, of_cloud.as_ref())
-        });
-        let samples = samples_of_cells(&raster, arrangement.cells);
-        let sample_m2 = grid.step * grid.step;
-        let mut cells = vec![Vec::new(); arrangement.cells];
-        for (i, group_cells) in per_group.into_iter().enumerate() {
-            for (cell, e) in group_cells {
-                // Most of the cell must lie in the plane's region and be seen. Samples are counted,
-                // not areas: a splinter has few, and its area says little about how many.
+            let sums = sum_over_cells(h, windows, places, grid, of_cloud.as_ref());
+            // Most of the cell must lie in the plane's region and be seen. Samples are counted,
+            // not areas: a splinter has few, and its area says little about how many.
+            let covers = |(cell, e): &(u32, CellEvidence)| {
+                let cell = *cell as usize;
                 let whole = f64::from(samples[cell]) * sample_m2;
-                if !arrangement.open[cell] && e.area >= 0.7 * whole {
-                    cells[cell].push((i as u32, e));
-                }
+                !arrangement.open[cell] && e.area >= 0.7 * whole
+            };
+            let priced = |(cell, e, nats): (u32, CellEvidence, CellSums)| {
+                let cost = -nats.windows - nats.single_view - nats.cloud;
+                (cell, CellEvidence { cost, ..e })
+            };
+            let covered: Box<[_]> = sums.into_iter().map(priced).filter(covers).collect();
+            covered
+        });
+        // There are millions: room for no more than there are.
+        let mut counts = vec![0; arrangement.cells];
+        for (cell, _) in per_group.iter().flatten() {
+            counts[*cell as usize] += 1;
+        }
+        let mut cells: Vec<Vec<_>> = counts.into_iter().map(Vec::with_capacity).collect();
+        for (i, covered) in per_group.into_iter().enumerate() {
+            for (cell, e) in covered {
+                cells[cell as usize].push((i as u32, e));
             }
         }
         let unsampled = |cell: usize| samples[cell] == 0 && !arrangement.open[cell];
@@ -104,7 +116,7 @@ impl PlaneEvidence {
     /// What a plane costs in a cell, nats, but for what a register says; `None` where the plane may
     /// not cover it.
     pub(super) fn cost(&self, cell: usize, plane: u32) -> Option<f64> {
-        self.get(cell, plane).map(|e| self.ground[cell] + e.cost())
+        self.get(cell, plane).map(|e| self.ground[cell] + e.cost)
     }
 
     /// What the images say of the ground in each cell, nats.
@@ -130,7 +142,7 @@ impl PlaneEvidence {
         // What a register says for a roof counts for every plane.
         let against = self.ground.iter().zip(&registered).map(|(g, r)| g - r);
         let costs = |(planes, against): (&Vec<(u32, CellEvidence)>, f64)| {
-            let cost = |(plane, e): &(u32, CellEvidence)| (*plane, against + e.cost());
+            let cost = |(plane, e): &(u32, CellEvidence)| (*plane, against + e.cost);
             planes.iter().map(cost).collect()
         };
         let unary = self.cells.iter().zip(against).map(costs).collect();
@@ -199,7 +211,7 @@ fn ground_evidence(
     evidence.into_iter().map(|nats| larger(nats, 0.0)).collect()
 }
 
-/// Sums over the cells of the arrangement: `raster` says in which of `cells` each sample of `grid`
+/// Sums over the cells of the arrangement, but for the cost: `raster` says in which of `cells` each sample of `grid`
 /// lies.
 fn sum_over_cells(
     hypothesis: &PlaneHypothesis,
@@ -207,7 +219,7 @@ fn sum_over_cells(
     (raster, cells): (&[u32], usize),
     grid: &PlanGrid,
     cloud: Option<&OfPlane>,
-) -> Vec<(usize, CellEvidence)> {
+) -> Vec<(u32, CellEvidence, CellSums)> {
     let (map, region) = (&hypothesis.map, &hypothesis.region);
     let window = &map.grid;
     let samples = window.of_samples();
@@ -217,7 +229,7 @@ fn sum_over_cells(
     const NO_PLACE: u32 = u32::MAX;
     // By cell the place of its sum.
     let mut place_of = vec![NO_PLACE; cells];
-    let mut sums: Vec<(usize, CellEvidence)> = Vec::new();
+    let mut sums: Vec<(u32, CellEvidence, CellSums)> = Vec::new();
     let within =
         |at: usize, d: isize, size: usize| at.checked_add_signed(d).filter(|moved| *moved < size);
     for row in 0..window.height {
@@ -246,16 +258,16 @@ fn sum_over_cells(
                 let cell = cell as usize;
                 if place_of[cell] == NO_PLACE {
                     place_of[cell] = sums.len() as u32;
-                    sums.push((cell, CellEvidence::default()));
+                    sums.push((cell as u32, CellEvidence::default(), CellSums::default()));
                 }
-                let e = &mut sums[place_of[cell] as usize].1;
-                e.single_view += single_view * area;
-                e.cloud += of_cloud * area;
+                let (_, e, nats) = &mut sums[place_of[cell] as usize];
+                nats.single_view += single_view * area;
+                nats.cloud += of_cloud * area;
                 let weight = observed.weight * area;
                 e.area += area;
                 e.weight += weight;
                 e.correlation += weight * observed.correlation;
-                e.nats += observed.nats_with_prior() * area;
+                nats.windows += observed.nats_with_prior() * area;
             }
         }
     }

@@ -55,8 +55,8 @@ export interface WorkerCalls {
   /** Lowest and highest ground as photographs in the middle of a flight show it, metres; null where they show too little. */
   groundHeights(options: LoadOptions): Promise<[number, number] | null>;
   exportProject(options: LoadOptions, shown: Uint8Array): Promise<Bytes>;
-  /** The outcome of a tile, the `index`-th of `of`, as bytes, with its progress as that of `stage`. */
-  runTile(stage: string, index: number, of: number): Promise<Bytes>;
+  /** The outcome of a tile of so many cells as bytes, after `done` of `of` others, with its progress as that of `stage`. */
+  runTile(stage: string, index: number, cells: number, done: number, of: number): Promise<Bytes>;
   /** What a square shows at a first look, the `index`-th of `of`, as bytes, with its progress as that of `stage`. */
   lookAt(stage: string, index: number, of: number): Promise<Bytes>;
   tileModel(index: number, kept: Bytes): TileOutcome;
@@ -82,8 +82,11 @@ type Inner =
   | "viewFilesOfLoad"
   | "groundFilesOfLook"
   | "viewFilesOfLook"
-  | "groundFilesOfTile"
-  | "viewFilesOfTile"
+  | "groundFilesOfCell"
+  | "viewFilesOfCell"
+  | "loadCell"
+  | "runCell"
+  | "tileOutcome"
   | "clearFiles"
   | typeof Symbol.dispose;
 

@@ -41,12 +41,16 @@ export function workerCalls(
     runStage: (stage) => session.runStage(stage, progressOf(stage)),
     adjustOnce: () => session.adjustOnce(progressOf("adjustment")),
     runShard: (stage, map, index, of) => session.runShard(stage, map, index, of, progressOf(stage)),
-    runTile: (stage, index, of) => {
+    runTile: async (stage, index, cells, done, of) => {
       const onTileProgress = progressOf(stage);
-      return files.withFilled(
-        [() => session.groundFilesOfTile(index), () => session.viewFilesOfTile(index)],
-        () => session.runTile(index, (fraction) => onTileProgress((index + fraction) / of)),
-      );
+      for (let cell = 0; cell < cells; cell++) {
+        await files.withFilled(
+          [() => session.groundFilesOfCell(index, cell), () => session.viewFilesOfCell(index, cell)],
+          () => session.loadCell(index, cell),
+        );
+        session.runCell(index, cell, (fraction) => onTileProgress((done + (cell + fraction) / cells) / of));
+      }
+      return session.tileOutcome(index);
     },
     lookAt: (stage, index, of) => {
       const onLookProgress = progressOf(stage);

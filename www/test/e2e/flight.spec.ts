@@ -90,7 +90,7 @@ test("a plan is there before anything long, and the region is drawn on it or sta
   await expect(page.locator(".activity")).toHaveCount(0);
   // The house stands on ground 100 m high, and four photographs of it show roofs, too.
   await expect(facts(page)).toContainText(/\+(9\d|10\d) to \+1[01]\d m/);
-  await expect(facts(page)).toContainText(/MB at most/);
+  await expect(facts(page)).toContainText("known after a first look");
   await expect(plan(page).locator(".footprints polygon")).toHaveCount(18);
   await expect(stage(page, "segments")).toHaveAttribute("data-status", "waiting");
   await expect(page.locator("canvas.view-image")).toHaveCount(0);

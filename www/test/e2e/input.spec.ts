@@ -170,7 +170,7 @@ const BAD_INPUTS: { what: string; files: () => Upload[]; says: RegExp }[] = [
   {
     what: "more than the memory holds",
     files: largeScene,
-    says: /MB of memory, more than 1536 MB.*region of interest/,
+    says: /MB of memory, more than 1200 MB.*region of interest/,
   },
   {
     what: "no image at all",

@@ -31,6 +31,7 @@ import type {
   SideTrace,
   StageSummary,
   TileReport,
+  WorkPlan,
 } from "../../src/shared/records";
 import { stagesOf } from "../../src/stages/catalogue";
 import type { CoreSession } from "../../src/worker/coreSession";
@@ -533,13 +534,17 @@ export class Session implements CoreSession {
     return ["model.glb", "report.json"];
   }
 
-  planTiles(): [number, number, number, number][] {
-    return [[0, 0, 50, 50]];
+  planTiles(): void {}
+
+  workPlan(): WorkPlan {
+    const core: [number, number, number, number] = [0, 0, 50, 50];
+    const views = this.#images().map((path) => ({ view: path, window: core, bytes: 0 }));
+    const cells = [{ place: { core, region: core }, memory_mb: 10, views }];
+    return { reduction: 1, order: [0], tiles: [{ tile: 1, core, memory_mb: 10, cells }] };
   }
 
   planFlight(): FlightPlan {
     const area: [number, number, number, number] = [0, 0, 50, 50];
-    const views = this.#images().map((path) => ({ view: path, window: area, bytes: 0 }));
     return {
       overview: {
         heights: [0, 0],
@@ -549,9 +554,9 @@ export class Session implements CoreSession {
         reduction: 1,
         footprints: [],
         shown: area,
-        overlap: { area, columns: 1, rows: 1, counts: [views.length] },
+        overlap: { area, columns: 1, rows: 1, counts: [this.#images().length] },
       },
-      tiles: [{ core: area, region: area, views, memory_mb: 10, left_out: null }],
+      tiles: [area],
       left_out: [],
       squares_left_out: 0,
       why_left_out: "fewer than three photographs show its ground",
@@ -594,11 +599,11 @@ export class Session implements CoreSession {
 
   takeLook(): void {}
 
-  groundFilesOfTile(): LackingFile[] {
+  groundFilesOfCell(): LackingFile[] {
     return [];
   }
 
-  viewFilesOfTile(): LackingFile[] {
+  viewFilesOfCell(): LackingFile[] {
     return [];
   }
 
@@ -616,8 +621,13 @@ export class Session implements CoreSession {
 
   emptyFiles(): void {}
 
-  runTile(_index: number, onProgress: (fraction: number) => void): Uint8Array<ArrayBuffer> {
+  loadCell(): void {}
+
+  runCell(_index: number, _cell: number, onProgress: (fraction: number) => void): void {
     onProgress(1);
+  }
+
+  tileOutcome(): Uint8Array<ArrayBuffer> {
     return new Uint8Array([1]);
   }
 

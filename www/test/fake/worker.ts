@@ -58,9 +58,9 @@ class StrictSession extends Session {
     return loaded;
   }
 
-  override planTiles(): [number, number, number, number][] {
+  override planTiles(): void {
     this.#isLoaded = false;
-    return super.planTiles();
+    super.planTiles();
   }
 
   override takeView(): void {

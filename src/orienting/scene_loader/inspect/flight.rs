@@ -6,14 +6,14 @@
 use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
-use super::super::ground::{pixel_in_the_middle, reduction_of, unreduced_plan};
+use super::super::ground::{pixel_in_the_middle, reduction_on, unreduced_plan};
 use super::super::input::LoadOptions;
 use super::super::memory;
 use super::super::plan::Plan;
 use super::super::planned_view::PlannedView;
 use super::super::region::RegionOfInterest;
 use super::windows::{ShownArea, ViewWindow, coarsest_pixel, enclosing, shows};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::orienting::orientation::InputFile;
 use crate::photographs::camera::Camera;
 
@@ -46,10 +46,10 @@ pub struct FlightOverview {
     pub ground: GroundSource,
     /// The height between them at which the footprints are drawn.
     pub ground_z: f64,
-    /// Size of a pixel on the ground, the middle one of all photographs.
-    pub pixel_m: f64,
-    /// The factor by which photographs may be reduced, so that roofs do not suffer.
+    /// The factor by which photographs are reduced: as it is stated, or so that roofs do not suffer.
     pub reduction: f64,
+    /// Size of a pixel on the ground then, the middle one of all photographs.
+    pub pixel_m: f64,
     /// The photographs in use.
     pub footprints: Vec<Footprint>,
     /// The box of what three or more show, in whole metres: x0, y0, x1, y1.
@@ -95,6 +95,7 @@ pub struct Flight<'a> {
     /// World frame.
     heights: [f64; 2],
     source: GroundSource,
+    reduction: f64,
     shown: Option<ShownArea>,
 }
 
@@ -120,8 +121,10 @@ impl<'a> Flight<'a> {
             }
         };
         let shown = ShownArea::of_plan(&plan, heights);
+        let z = 0.5 * (heights[0] + heights[1]) - plan.origin.z;
+        let reduction = options.reduction.unwrap_or_else(|| reduction_on(&plan, z));
         for view in &mut plan.views {
-            view.reduce(options.reduction.unwrap_or(1.0));
+            view.reduce(reduction);
         }
         Ok(Self {
             files,
@@ -129,6 +132,7 @@ impl<'a> Flight<'a> {
             most: options.max_views,
             heights,
             source,
+            reduction,
             plan,
             shown,
         })
@@ -139,16 +143,10 @@ impl<'a> Flight<'a> {
         self.shown.as_ref()
     }
 
-    /// The heights of the ground, local frame.
-    fn local_heights(&self) -> [f64; 2] {
-        self.heights.map(|height| height - self.plan.origin.z)
-    }
-
     /// All photographs, seen from above.
     pub fn overview(&self) -> FlightOverview {
         let origin = self.plan.origin;
-        let [low, high] = self.local_heights();
-        let z = 0.5 * (low + high);
+        let z = 0.5 * (self.heights[0] + self.heights[1]) - origin.z;
         let cameras: Vec<&Camera> = self.plan.views.iter().map(|view| &view.whole).collect();
         let coarsest = coarsest_pixel(&cameras, z).unwrap_or(f64::INFINITY);
         let footprint = |view: &PlannedView| Footprint {
@@ -160,7 +158,6 @@ impl<'a> Flight<'a> {
                 .collect(),
         };
         let pixel_m = pixel_in_the_middle(cameras.iter().copied(), z).unwrap_or_default();
-        let reduction = (self.plan.views.first()).map_or(1.0, |view| view.reduction);
         let moved = |[x0, y0, x1, y1]: [f64; 4], by: f64| {
             let [x, y] = [by * origin.x, by * origin.y];
             [x0 + x, y0 + y, x1 + x, y1 + y]
@@ -174,7 +171,7 @@ impl<'a> Flight<'a> {
             ground: self.source,
             ground_z: z + origin.z,
             pixel_m,
-            reduction: reduction_of(pixel_m / reduction),
+            reduction: self.reduction,
             footprints: self.plan.views.iter().map(footprint).collect(),
             shown,
             overlap,
@@ -182,18 +179,29 @@ impl<'a> Flight<'a> {
     }
 
     /// The views that a run on a region of interest reads, which part of each, and the memory that
-    /// it takes at its peak, megabytes, with the whole files of these views.
-    pub fn windows(&self, roi: [f64; 4]) -> Result<(Vec<ViewWindow>, u64)> {
+    /// it takes at its peak with so many square metres of roof, megabytes, with the whole files of
+    /// these views; and why, if that is refused. Where the region's ground is not known it is that
+    /// of the flight.
+    pub fn windows(
+        &self,
+        region: &LoadOptions,
+        roofs_m2: Option<f64>,
+    ) -> Result<(Vec<ViewWindow>, u64, Option<Error>)> {
         let mut views = self.plan.views.clone();
-        let region = RegionOfInterest::new(roi, &self.plan.origin, self.local_heights())?;
+        let heights = region.ground_range.unwrap_or(self.heights);
+        let heights = heights.map(|height| height - self.plan.origin.z);
+        let roi = region.roi.expect("a region is stated");
+        let region = RegionOfInterest::new(roi, &self.plan.origin, heights)?;
         region.cut(self.files, &mut views, self.most)?;
-        let bytes = memory::peak_bytes(self.files, &views);
-        if let Some(error) = memory::check_memory(bytes, &views, self.memory_mb) {
-            return Err(error);
-        }
+        let bytes = memory::peak_bytes(self.files, &views, roofs_m2);
+        let refusal = memory::check_memory(bytes, &views, self.memory_mb);
         let window = |view: &PlannedView| ViewWindow::of(self.files, view);
         // A part of a megabyte counts as a whole one.
-        Ok((views.iter().map(window).collect(), (bytes >> 20) + 1))
+        Ok((
+            views.iter().map(window).collect(),
+            (bytes >> 20) + 1,
+            refusal,
+        ))
     }
 }
 
@@ -282,8 +290,8 @@ fn overlap(cameras: &[&Camera], z: f64, coarsest: f64, area: [f64; 4]) -> Overla
 
 #[cfg(test)]
 mod tests {
-    use super::super::windows::region_windows;
     use super::*;
+    use crate::orienting::scene_loader::ground::plan_scene;
     use crate::orienting::scene_loader::{files_of_ground, files_of_views};
     use crate::orienting::synthetic::{gable_scene, to_files};
     use crate::photographs::raster::image_format;
@@ -314,12 +322,30 @@ mod tests {
         let [x0, y0, x1, y1] = flight.overview().shown.unwrap();
         let (x, y) = (0.5 * (x0 + x1), 0.5 * (y0 + y1));
         for roi in [[x0, y0, x1, y1], [x, y, x + 1.0, y + 1.0], [x0, y0, x, y]] {
-            let alone = region_windows(&files, &options(Some(roi), Some(z))).unwrap();
-            assert_eq!(flight.windows(roi).unwrap(), alone);
-            assert_eq!(alone.0.len(), 4);
+            let alone = plan_scene(&files, &options(Some(roi), Some(z)));
+            let views = alone.views.iter().map(|view| ViewWindow::of(&files, view));
+            let region = options(Some(roi), Some(z));
+            let (windows, memory_mb, _) = flight.windows(&region, None).unwrap();
+            assert_eq!(windows, views.collect::<Vec<_>>());
+            assert_eq!(memory_mb, (alone.peak_bytes >> 20) + 1);
+            assert_eq!(windows.len(), 4);
+            // Ground that is known of the region alone, and is not measured.
+            let known = LoadOptions {
+                ground_range: Some([z - 1.0, z + 2.0]),
+                ..options(Some(roi), None)
+            };
+            assert!(files_of_ground(&files, &known).is_empty());
+            let alone = plan_scene(&files, &known);
+            let views = alone.views.iter().map(|view| ViewWindow::of(&files, view));
+            let (windows, ..) = flight.windows(&known, None).unwrap();
+            assert_eq!(windows, views.collect::<Vec<_>>());
         }
         let elsewhere = [x1 + 900.0, y1, x1 + 950.0, y1 + 50.0];
-        assert!(flight.windows(elsewhere).is_err());
+        assert!(
+            flight
+                .windows(&options(Some(elsewhere), Some(z)), None)
+                .is_err()
+        );
     }
 
     #[test]

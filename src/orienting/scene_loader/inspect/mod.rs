@@ -6,7 +6,7 @@ mod flight;
 mod windows;
 
 pub use flight::{Flight, FlightOverview, Footprint, GroundSource, Overlap};
-pub use windows::{ShownArea, ViewWindow, region_windows};
+pub use windows::{ShownArea, ViewWindow};
 pub(crate) use windows::{box_of_views, shown_places};
 
 use serde::Serialize;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::checks::camera_checks::LEAST_VIEWS;
 use super::super::decode::needed;
-use super::super::ground::{ground_heights, pixel_in_the_middle, plan_scene, unreduced_plan};
+use super::super::ground::{pixel_in_the_middle, unreduced_plan};
 use super::super::input::LoadOptions;
 use super::super::plan::Plan;
 use super::super::planned_view::PlannedView;
@@ -45,21 +45,6 @@ impl ViewWindow {
     }
 }
 
-/// The views of the region of interest, and the memory that a run on them takes at its peak,
-/// megabytes.
-pub fn region_windows(
-    files: &[InputFile],
-    options: &LoadOptions,
-) -> Result<(Vec<ViewWindow>, u64)> {
-    let plan = plan_scene(files, options);
-    if let (Some(error), false) = (plan.errors.into_iter().next(), plan.is_implausible) {
-        return Err(error);
-    }
-    let views = (plan.views.iter()).map(|planned| ViewWindow::of(files, planned));
-    // A part of a megabyte counts as a whole one.
-    Ok((views.collect(), (plan.peak_bytes >> 20) + 1))
-}
-
 /// The places on the ground that three or more views show, on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownArea {
@@ -72,9 +57,8 @@ pub struct ShownArea {
 }
 
 impl ShownArea {
-    /// What the views show of level ground, at the height that is stated, else in the middle of
-    /// `ground` (lowest and highest, metres, world frame), else at what the photographs in the
-    /// middle of the block show. By how much photographs are reduced does not matter.
+    /// What the views show of level ground in the middle of `ground` (lowest and highest, metres,
+    /// world frame), where that is known. By how much photographs are reduced does not matter.
     pub fn new(
         files: &[InputFile],
         options: &LoadOptions,
@@ -84,8 +68,6 @@ impl ShownArea {
         if let Some(error) = plan.errors.first() {
             return Err(error.clone());
         }
-        let stated = options.ground_z.map(|z| [z, z]);
-        let ground = stated.or(ground).or_else(|| ground_heights(files, options));
         let shown = ground.and_then(|heights| Self::of_plan(&plan, heights));
         shown.ok_or_else(|| Error::Scene {
             problem: "the cameras do not tell which area three of them show".to_owned(),
@@ -116,6 +98,21 @@ impl ShownArea {
         let holds =
             |p: &Point2<f64>| p.x >= x0 - x && p.x < x1 + x && p.y >= y0 - y && p.y < y1 + y;
         self.places.iter().any(holds)
+    }
+
+    /// The part of a box (x0, y0, x1, y1, world frame) that the places in it reach, to whole metres;
+    /// all of it where there is none.
+    pub fn part_of(&self, [x0, y0, x1, y1]: [f64; 4]) -> [f64; 4] {
+        let holds = |p: &&Point2<f64>| p.x >= x0 && p.x < x1 && p.y >= y0 && p.y < y1;
+        let shown: Vec<Point2<f64>> = self.places.iter().filter(holds).copied().collect();
+        enclosing(&shown).map_or([x0, y0, x1, y1], |[a, b, c, d]| {
+            [
+                larger((a - self.step).floor(), x0),
+                larger((b - self.step).floor(), y0),
+                smaller((c + self.step).ceil(), x1),
+                smaller((d + self.step).ceil(), y1),
+            ]
+        })
     }
 }
 
@@ -246,6 +243,12 @@ mod tests {
             assert!(shown.meets([x, 0.0, x + 60.0, 60.0]), "{x}");
         }
         assert!(!shown.meets([960.0, 0.0, 1000.0, 60.0]));
+        let part = shown.part_of([150.5, 0.0, 350.0, 60.0]);
+        assert_eq!(part, [150.5, 0.0, 350.0, 60.0]);
+        let part = shown.part_of([550.0, 0.0, 2000.0, 200.0]);
+        assert_eq!(part, [550.0, 0.0, 1000.0, 130.0]);
+        let nowhere = [550.0, 100.0, 2000.0, 200.0];
+        assert_eq!(shown.part_of(nowhere), nowhere);
         assert!(!shown.meets([0.0, 120.0, 60.0, 180.0]));
     }
 

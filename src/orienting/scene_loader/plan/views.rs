@@ -37,12 +37,15 @@ impl Plan {
         // and after the images have decided about the angles, where there is memory for that.
         let is_undecided = views.iter().all(|v| !v.readings.is_empty());
         let whole_fits = || {
-            let bytes = memory::peak_bytes(files, &views);
+            let bytes = memory::peak_bytes(files, &views, None);
             memory::check_memory(bytes, &views, options.memory_mb).is_none()
         };
         self.is_cut_later = options.apply_fix || is_undecided && whole_fits();
         let cut_now = !self.is_cut_later;
-        if let (Some(roi), Some(heights), true) = (options.roi, ground.or(heights), cut_now) {
+        let known = options.ground_range;
+        let known = known.map(|range| range.map(|height| height - self.origin.z));
+        let heights = known.or(ground).or(heights);
+        if let (Some(roi), Some(heights), true) = (options.roi, heights, cut_now) {
             let roi = RegionOfInterest::new(roi, &self.origin, heights);
             match roi.and_then(|roi| roi.cut(files, &mut views, options.max_views)) {
                 Ok(cut) => {
@@ -52,7 +55,7 @@ impl Plan {
                 Err(error) => self.errors.push(error),
             }
         }
-        self.peak_bytes = memory::peak_bytes(files, &views);
+        self.peak_bytes = memory::peak_bytes(files, &views, None);
         let too_large = memory::check_memory(self.peak_bytes, &views, options.memory_mb);
         self.is_implausible &= too_large.is_none();
         self.errors.extend(too_large);

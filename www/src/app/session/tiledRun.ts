@@ -5,9 +5,17 @@
 import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
 import type { TileOutcome } from "../../shared/calls";
-import type { TileReport } from "../../shared/records";
+import type { TileReport, WorkPlan } from "../../shared/records";
 import { counted } from "../parts/counted";
-import { addDoneTile, flightPlan, megapixelsLeft, megapixelsOf, showTileRun } from "../project/tiles/flight";
+import {
+  addDoneTile,
+  cellsOf,
+  flightPlan,
+  megapixelsLeft,
+  megapixelsOf,
+  showTileRun,
+  showWorkPlan,
+} from "../project/tiles/flight";
 import type { KeptTiles } from "../project/tiles/keptTiles";
 import { noteTile, secondsPerMegapixel } from "../project/tiles/pace";
 import { announce } from "../state/notices";
@@ -68,17 +76,18 @@ export async function runTiles(turn: Turn, tileM: number): Promise<void> {
 }
 
 async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<TileReport[]> {
-  const tiles = await engine.call("planTiles", tileOptions(), tileM, plannedHeights());
-  await lookFirst(turn, kept, tiles.length);
+  await engine.call("planTiles", tileOptions(), tileM, plannedHeights());
+  const { order } = await lookFirst(turn, kept);
   const reports: TileReport[] = [];
-  for (const index of tiles.keys()) {
+  for (const [before, tile] of order.entries()) {
     const secondsLeft = secondsPerMegapixel.value * megapixelsLeft();
-    showTileRun({ tile: index, fraction: 0, since: performance.now(), secondsLeft });
-    turn.enter("run", `Tile ${index + 1} of ${tiles.length}`);
-    announce(`Tile ${index + 1} of ${tiles.length}`);
-    const { report, glb } = (await keptOutcome(kept, index)) ?? (await workOff(kept, index, tiles.length));
-    reports.push(report);
-    addDoneTile(index, report.outcome);
+    showTileRun({ tile, before, fraction: 0, since: performance.now(), secondsLeft });
+    turn.enter("run", `Tile ${before + 1} of ${order.length}`);
+    announce(`Tile ${before + 1} of ${order.length}`);
+    const { report, glb } =
+      (await keptOutcome(kept, tile)) ?? (await workOff(kept, tile, before, order.length));
+    reports[tile] = report;
+    addDoneTile(tile, report.outcome);
     if (glb !== null) {
       addTileModel(glb);
       // The model is to be seen growing, unless something else is looked at.
@@ -88,8 +97,8 @@ async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<Tile
     }
   }
   turn.enter("run", "Joining the tiles");
-  for (const index of tiles.keys()) {
-    const outcome = await kept.read(index);
+  for (const tile of reports.keys()) {
+    const outcome = await kept.read(tile);
     if (outcome === null) {
       throw new Error("A tile that was done cannot be read any more. Run again: it is computed anew.");
     }
@@ -98,12 +107,12 @@ async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<Tile
   return reports;
 }
 
-/** Looks at the whole area in small photographs: the tiles then work where a roof may be. */
-async function lookFirst(turn: Turn, kept: KeptTiles, tiles: number): Promise<void> {
+/** Looks at the whole area in small photographs: what the tiles then read, where a roof may be. */
+async function lookFirst(turn: Turn, kept: KeptTiles): Promise<WorkPlan> {
   const squares = await engine.call("squaresToLookAt");
   turn.enter("run", "Looking for places where a roof may be");
-  const secondsLeft = secondsPerMegapixel.value * megapixelsLeft();
-  showTileRun({ tile: 0, fraction: 0, since: performance.now(), secondsLeft });
+  showTileRun({ tile: null, before: 0, fraction: 0, since: performance.now(), secondsLeft: 0 });
+  const tiles = flightPlan.value?.tiles.length ?? 1;
   for (let index = 0; index < squares; index++) {
     const key = -1 - index;
     let seen = await kept.read(key);
@@ -114,6 +123,9 @@ async function lookFirst(turn: Turn, kept: KeptTiles, tiles: number): Promise<vo
     }
     await engine.callMoving([seen.buffer], "takeLook", seen);
   }
+  const work = await engine.call("workPlan");
+  showWorkPlan(work);
+  return work;
 }
 
 /** What is kept of a tile; null where nothing is, or what another core would not take. */
@@ -133,11 +145,10 @@ async function keptOutcome(kept: KeptTiles, index: number): Promise<TileOutcome 
   }
 }
 
-async function workOff(kept: KeptTiles, index: number, of: number): Promise<TileOutcome> {
+async function workOff(kept: KeptTiles, tile: number, before: number, of: number): Promise<TileOutcome> {
   const started = performance.now();
-  const outcome = await engine.call("runTile", STAGE, index, of);
-  const plan = flightPlan.value;
-  noteTile((performance.now() - started) / 1000, plan === null ? 0 : megapixelsOf(plan, index));
-  await kept.keep(index, outcome);
-  return engine.callMoving([outcome.buffer], "tileModel", index, outcome);
+  const outcome = await engine.call("runTile", STAGE, tile, cellsOf(tile).length, before, of);
+  noteTile((performance.now() - started) / 1000, megapixelsOf(tile));
+  await kept.keep(tile, outcome);
+  return engine.callMoving([outcome.buffer], "tileModel", tile, outcome);
 }

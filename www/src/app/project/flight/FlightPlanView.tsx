@@ -16,12 +16,15 @@ import { mainResults } from "../../state/results";
 import { showTab } from "../../state/viewState";
 import { setRunOptions } from "../projectActions";
 import {
+  cellsOf,
   doneTiles,
   flightPlan,
-  megapixelsOf,
+  megapixelsLeft,
   plannedReduction,
   type Region,
   usedTiles,
+  viewsOf,
+  workPlan,
 } from "../tiles/flight";
 import { secondsPerMegapixel } from "../tiles/pace";
 import { PlanDrawing } from "./PlanDrawing";
@@ -150,20 +153,28 @@ function keptText(count: number): string {
   return `${counted(count, "tiles")} of this plan ${count === 1 ? "is" : "are"} kept in this browser.`;
 }
 
+/** What only a first look tells. */
+const NOT_YET = "known after a first look, with which the run begins";
+
 function Facts({ plan }: { plan: FlightPlan }) {
-  const { overview, tiles } = plan;
+  const { overview } = plan;
   const used = usedTiles.value;
-  const counts = used.map((tile) => tiles[tile]?.views.length ?? 0);
-  const memory = Math.max(0, ...used.map((tile) => tiles[tile]?.memory_mb ?? 0));
-  const left = used.filter((tile) => !doneTiles.value.has(tile));
-  const seconds = secondsPerMegapixel.value * left.reduce((sum, tile) => sum + megapixelsOf(plan, tile), 0);
+  const work = workPlan.value;
+  const worked = used.filter((tile) => cellsOf(tile).length > 0);
+  const isBegun = used.some((tile) => doneTiles.value.has(tile));
+  const known = (text: () => string) => (work === null ? NOT_YET : worked.length > 0 ? text() : "–");
+  const memory = () => Math.max(...worked.map((tile) => work?.tiles[tile]?.memory_mb ?? 0));
+  const pixelCm = (100 * overview.pixel_m * plannedReduction.value) / overview.reduction;
   const facts: readonly (readonly [string, string])[] = [
     ["Region", regionText(plannedRegion())],
     ["Tiles", tilesText(plan, used.length)],
-    ["Photographs a tile", rangeText(counts)],
-    ["Memory at a time", used.length > 0 ? `about ${memory} MB at most` : "–"],
-    ["Time", used.length > 0 ? `${minutesText(seconds)}${left.length < used.length ? " more" : ""}` : "–"],
-    ["Pixel on the ground", `${(100 * overview.pixel_m).toFixed(overview.pixel_m < 0.1 ? 1 : 0)} cm`],
+    ["Photographs a tile", known(() => rangeText(worked.map((tile) => viewsOf(tile).length)))],
+    ["Memory at a time", known(() => `about ${memory()} MB at most`)],
+    [
+      "Time",
+      known(() => `${minutesText(secondsPerMegapixel.value * megapixelsLeft())}${isBegun ? " more" : ""}`),
+    ],
+    ["Pixel on the ground", `${pixelCm.toFixed(pixelCm < 10 ? 1 : 0)} cm`],
     ["Ground", groundText(overview)],
   ];
   return (
@@ -188,8 +199,9 @@ function regionText(region: Region | null): string {
 }
 
 function tilesText({ tiles, squares_left_out, why_left_out }: FlightPlan, used: number): string {
-  const lacking = tiles.filter(({ left_out }) => isOfMemory(left_out)).length;
-  const unseen = tiles.length - used - lacking;
+  const leftOut = [...tiles.keys()].filter((tile) => !usedTiles.value.includes(tile));
+  const lacking = leftOut.filter((tile) => isOfMemory(cellsOf(tile)[0]?.left_out ?? "")).length;
+  const unseen = leftOut.length - lacking;
   const parts = [String(used)];
   if (unseen > 0) {
     parts.push(`${unseen} more shown by too few photographs`);

@@ -22,10 +22,16 @@ export function FlightProgress() {
         <b>
           {done} of {counted(used, "tiles")}
         </b>
-        <span>
-          {read} of {counted(all, "photographs")} read
-        </span>
-        <span>{isJoining ? "joining the tiles" : `${minutesText(run.secondsLeft)} left`}</span>
+        {run.tile === null ? (
+          <span>looking for places where a roof may be</span>
+        ) : (
+          <>
+            <span>
+              {read} of {counted(all, "photographs")} read
+            </span>
+            <span>{isJoining ? "joining the tiles" : `${minutesText(run.secondsLeft)} left`}</span>
+          </>
+        )}
       </p>
     </div>
   );

@@ -7,7 +7,7 @@ import { counted } from "../../parts/counted";
 import { files } from "../../state/project";
 import { Thumbnail } from "../Thumbnail";
 import { thumbnailOf } from "../thumbnails";
-import { doneTiles, type Region, tileRun } from "../tiles/flight";
+import { cellsOf, doneTiles, type Region, tileRun, usedTiles, viewsOf, workPlan } from "../tiles/flight";
 import { boxOf, coverOf, frameOf, type PlanFrame, regionBetween, spacingOf } from "./planGeometry";
 
 /** A region is meant, and not a click, when it is so large, fractions of the drawing. */
@@ -136,16 +136,14 @@ function Tiles({ plan, frame }: { plan: FlightPlan; frame: PlanFrame }) {
   const running = useComputed(() => tileRun.value?.tile ?? null);
   return (
     <g class="tiles">
-      {plan.tiles.map(({ core, views, memory_mb, left_out }, i) => {
-        const state =
-          left_out !== null
-            ? "left-out"
-            : running.value === i
-              ? "running"
-              : doneTiles.value.has(i)
-                ? "done"
-                : "waiting";
-        const size = `${counted(views.length, "photographs")}, about ${memory_mb} MB`;
+      {plan.tiles.map((core, i) => {
+        const state = !usedTiles.value.includes(i)
+          ? "left-out"
+          : running.value === i
+            ? "running"
+            : doneTiles.value.has(i)
+              ? "done"
+              : "waiting";
         return (
           <rect
             key={core.join()}
@@ -155,15 +153,31 @@ function Tiles({ plan, frame }: { plan: FlightPlan; frame: PlanFrame }) {
             {...boxOf(frame, core)}
           >
             <title>
-              {left_out === null
-                ? `Tile ${i + 1}: ${doneTiles.value.get(i) ?? size}`
-                : `Tile ${i + 1} is left out: ${left_out}`}
+              {state === "left-out"
+                ? `Tile ${i + 1} is left out: ${cellsOf(i)[0]?.left_out}`
+                : `Tile ${i + 1}: ${doneTiles.value.get(i) ?? sizeText(i)}`}
             </title>
           </rect>
         );
       })}
+      {plan.tiles.flatMap((_, i) =>
+        cellsOf(i).map(({ place: { core } }) => (
+          <rect key={core.join()} class="cell" {...boxOf(frame, core)} />
+        )),
+      )}
     </g>
   );
+}
+
+/** What a tile takes, as far as it is known. */
+function sizeText(tile: number): string {
+  const work = workPlan.value?.tiles[tile];
+  if (work === undefined) {
+    return "not looked at yet";
+  }
+  return work.cells.length === 0
+    ? "nothing that may be a roof"
+    : `${counted(viewsOf(tile).length, "photographs")}, about ${work.memory_mb} MB`;
 }
 
 /** The photograph that is pointed at: what it shows, and its name. */
