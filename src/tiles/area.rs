@@ -42,7 +42,6 @@ pub struct Area {
     is_reduction_stated: bool,
     /// Lowest and highest ground, metres, world frame, where it is known.
     heights: Option<[f64; 2]>,
-    shown: Option<ShownArea>,
     pub(super) params: Params,
     pub(super) tiles: Vec<Tile>,
     pub(super) left_out: Vec<[f64; 4]>,
@@ -102,12 +101,9 @@ impl Area {
         }
         let files = source.files();
         let mut settled = settled_on(files, options, heights);
-        let (divided, shown) = match options.roi {
-            Some(roi) => (Division::of_region(roi, tile_m)?, None),
-            None => {
-                let shown = ShownArea::new(files, &settled, heights)?;
-                (Division::of_shown(&shown, tile_m)?, Some(shown))
-            }
+        let divided = match options.roi {
+            Some(roi) => Division::of_region(roi, tile_m)?,
+            None => Division::of_shown(&ShownArea::new(files, &settled, heights)?, tile_m)?,
         };
         let Division {
             area,
@@ -128,7 +124,6 @@ impl Area {
             options: settled,
             is_reduction_stated: options.reduction.is_some(),
             heights,
-            shown,
             params: params.clone(),
             begun: WorkedTile::default(),
             parts: Vec::new(),
@@ -203,11 +198,6 @@ impl Area {
         let area = self.options.roi.expect("an area has one");
         let seen = &self.seen.0;
         self.sites = seen.place_cells(&mut self.tiles, area);
-        if let Some(shown) = &self.shown {
-            // A region that lies mostly outside would choose views for what nobody sees.
-            let cells = self.tiles.iter_mut().flat_map(|tile| &mut tile.cells);
-            cells.for_each(|cell| cell.region = shown.part_of(cell.region));
-        }
         let planned = |options: &LoadOptions| {
             let laid = (&self.tiles[..], &self.sites[..]);
             WorkPlan::new(files, options, self.heights, laid, &seen.ground)

@@ -99,21 +99,6 @@ impl ShownArea {
             |p: &Point2<f64>| p.x >= x0 - x && p.x < x1 + x && p.y >= y0 - y && p.y < y1 + y;
         self.places.iter().any(holds)
     }
-
-    /// The part of a box (x0, y0, x1, y1, world frame) that the places in it reach, to whole metres;
-    /// all of it where there is none.
-    pub fn part_of(&self, [x0, y0, x1, y1]: [f64; 4]) -> [f64; 4] {
-        let holds = |p: &&Point2<f64>| p.x >= x0 && p.x < x1 && p.y >= y0 && p.y < y1;
-        let shown: Vec<Point2<f64>> = self.places.iter().filter(holds).copied().collect();
-        enclosing(&shown).map_or([x0, y0, x1, y1], |[a, b, c, d]| {
-            [
-                larger((a - self.step).floor(), x0),
-                larger((b - self.step).floor(), y0),
-                smaller((c + self.step).ceil(), x1),
-                smaller((d + self.step).ceil(), y1),
-            ]
-        })
-    }
 }
 
 /// The largest pixels that count, metres, on ground at this height.
@@ -243,12 +228,6 @@ mod tests {
             assert!(shown.meets([x, 0.0, x + 60.0, 60.0]), "{x}");
         }
         assert!(!shown.meets([960.0, 0.0, 1000.0, 60.0]));
-        let part = shown.part_of([150.5, 0.0, 350.0, 60.0]);
-        assert_eq!(part, [150.5, 0.0, 350.0, 60.0]);
-        let part = shown.part_of([550.0, 0.0, 2000.0, 200.0]);
-        assert_eq!(part, [550.0, 0.0, 1000.0, 130.0]);
-        let nowhere = [550.0, 100.0, 2000.0, 200.0];
-        assert_eq!(shown.part_of(nowhere), nowhere);
         assert!(!shown.meets([0.0, 120.0, 60.0, 180.0]));
     }
 
