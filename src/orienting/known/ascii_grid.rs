@@ -139,6 +139,7 @@ fn read_heights<'a>(
             let is_none = word.contains('#') || word.to_ascii_lowercase().contains("nan");
             let z = if is_none { Ok(f32::NAN) } else { word.parse() };
             let z = z.map_err(|_| {
+                let word: String = word.chars().take(20).collect();
                 let problem = format!("'{word}' is no number");
                 refuse(file, i + 1, problem, "heights with a decimal point")
             })?;

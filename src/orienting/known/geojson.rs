@@ -47,15 +47,8 @@ pub(super) fn read(
             Some("Feature") => &feature["geometry"],
             _ => feature,
         };
-        let coordinates = &geometry["coordinates"];
-        let polygons = match geometry["type"].as_str() {
-            Some("Polygon") => std::slice::from_ref(coordinates),
-            Some("MultiPolygon") => coordinates.as_array().map_or(&[][..], Vec::as_slice),
-            // Points and lines are no footprints.
-            _ => continue,
-        };
         let name = name_of(feature, i);
-        for polygon in polygons {
+        for polygon in polygons_of(geometry) {
             let rings = rings_of(polygon, &way).ok_or_else(|| {
                 refusal(
                     &file.path,
@@ -72,13 +65,37 @@ pub(super) fn read(
     Ok(outlines)
 }
 
+/// The polygons of a geometry; points and lines are no footprints.
+fn polygons_of(geometry: &Value) -> Vec<&Value> {
+    let all = |name: &str| geometry[name].as_array().into_iter().flatten();
+    match geometry["type"].as_str() {
+        Some("Polygon") => vec![&geometry["coordinates"]],
+        Some("MultiPolygon") => all("coordinates").collect(),
+        Some("GeometryCollection") => all("geometries").flat_map(polygons_of).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Exchanges x and y of all positions.
+pub(super) fn exchange(json: &mut Value) {
+    match json {
+        Value::Array(position) if position.len() > 1 && position[0].is_number() => {
+            position.swap(0, 1);
+        }
+        Value::Array(inner) => inner.iter_mut().for_each(exchange),
+        Value::Object(members) => members.values_mut().for_each(exchange),
+        _ => {}
+    }
+}
+
 /// The system of GeoJSON 2008's member, or of the form before that (`"type": "EPSG"`).
 fn stated_of(crs: &Value) -> Option<StatedSystem> {
-    // PROJJSON has its code in `id`.
-    let properties = match &crs["id"] {
-        Value::Null => &crs["properties"],
-        id => id,
-    };
+    // PROJJSON has its code in `id`; of a compound system the first part is that of the plan.
+    let plan = &crs["components"][0]["id"];
+    let properties = [&crs["id"], plan, &crs["properties"]]
+        .into_iter()
+        .find(|member| !member.is_null())
+        .unwrap_or(&Value::Null);
     match (
         crs.as_str().or(properties["name"].as_str()),
         &properties["code"],

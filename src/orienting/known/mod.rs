@@ -242,11 +242,19 @@ impl Register {
         let json = json_lines::read(file)?;
         let outlines = match json["type"].as_str() {
             Some("CityJSON") => city_json::read(file, &json, system)?,
-            Some("FeatureCollection" | "Feature" | "Polygon" | "MultiPolygon") => {
-                geojson::read(file, &json, system, warnings)?
-            }
+            Some(
+                "FeatureCollection" | "Feature" | "Polygon" | "MultiPolygon" | "GeometryCollection",
+            ) => geojson::read(file, &json, system, warnings)?,
             _ => return Err(none()),
         };
+        if outlines.is_empty() {
+            let problem = "it holds no polygons of buildings";
+            return Err(refusal(
+                &file.path,
+                problem,
+                "give polygons, not lines or points",
+            ));
+        }
         let mut footprints = Vec::new();
         for outline in outlines {
             let name = outline.name.clone();
@@ -268,6 +276,28 @@ impl Register {
             footprints,
             accuracy_m,
         })
+    }
+
+    /// Do footprints of GeoJSON reach into a box in plan, x0, y0, x1, y1, local frame, if x and y
+    /// are exchanged?
+    pub fn reaches_exchanged(
+        file: &InputFile,
+        system: &WorldSystem,
+        origin: Vector3<f64>,
+        area: [f64; 4],
+    ) -> bool {
+        let outlines = json_lines::read(file).and_then(|mut json| {
+            geojson::exchange(&mut json);
+            geojson::read(file, &json, system, &mut Vec::new())
+        });
+        let footprints = outlines.into_iter().flatten();
+        let footprints = footprints.filter_map(|outline| Footprint::new(outline, origin).ok());
+        let register = Self {
+            file: file.path.clone(),
+            footprints: footprints.collect(),
+            accuracy_m: 0.0,
+        };
+        register.reaches(area)
     }
 
     /// Does any outline reach into a box in plan, x0, y0, x1, y1, local frame?

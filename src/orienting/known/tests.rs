@@ -452,7 +452,7 @@ fn footprints_that_cannot_be_used_are_refused_by_name() {
     refused(
         &feature("Point", "[1,2]", CRS),
         &UTM,
-        "none of its footprints",
+        "no polygons of buildings",
     );
     refused("{\n\"type\": ", &UTM, "line 2");
     refused("{\"a\": 1}", &UTM, "no footprints");

@@ -147,15 +147,27 @@ impl KnownOf<'_> {
         let accuracy_m = stated.unwrap_or(FOOTPRINT_ACCURACY_M);
         let read = Register::read(meant.file, &self.system, self.origin, accuracy_m, said)?;
         let register = read.without_areas(&self.places, self.shown_m2, said)?;
-        let is_elsewhere = self.area.is_some_and(|area| !register.reaches(area));
-        if is_elsewhere && !meant.is_named {
-            return Err(Error::File {
-                file: register.file,
-                problem: "none of its footprints lies where the photographs do".to_owned(),
-                advice: "name its system in it, or leave it out (--without)".to_owned(),
-            });
-        }
-        Ok(register)
+        let Some(area) = self.area.filter(|area| !register.reaches(*area)) else {
+            return Ok(register);
+        };
+        let is_exchanged = Register::reaches_exchanged(meant.file, &self.system, self.origin, area);
+        let (problem, advice) = match is_exchanged {
+            true => (
+                "its footprints lie where the photographs do with x and y exchanged (latitude \
+                 before longitude, northing before easting)",
+                "exchange them in it",
+            ),
+            false if meant.is_named => return Ok(register),
+            false => (
+                "none of its footprints lies where the photographs do",
+                "name its system in it, or leave it out (--without)",
+            ),
+        };
+        Err(Error::File {
+            file: register.file,
+            problem: problem.to_owned(),
+            advice: advice.to_owned(),
+        })
     }
 }
 

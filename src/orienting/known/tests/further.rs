@@ -181,6 +181,13 @@ fn footprints_in_the_forms_of_many_programs_are_read() {
     let in_km = planted_polygon(|p| p.map(|v| v / 1000.0));
     let crs = |name: &str| CRS.replace("urn:ogc:def:crs:EPSG::25832", name);
     let projjson = r#""crs":{"type":"ProjectedCRS","id":{"authority":"EPSG","code":25832}},"#;
+    let compound = format!(
+        r#""crs":{{"type":"CompoundCRS","components":[{{{}}}]}},"#,
+        &projjson[7..projjson.len() - 2]
+    );
+    let collected = format!(
+        r#"{{"type":"GeometryCollection","crs":null,"geometries":[{{"type":"Point","coordinates":[1,2]}},{{"type":"Polygon","coordinates":{metres}}}]}}"#
+    );
     let with_height = |part: &str| match part.ends_with(|c: char| c.is_ascii_digit()) {
         true => format!("{part},331.5"),
         false => part.to_owned(),
@@ -223,6 +230,8 @@ fn footprints_in_the_forms_of_many_programs_are_read() {
         )
         .into_bytes(),
         feature("Polygon", &metres, projjson).into_bytes(),
+        feature("Polygon", &metres, &compound).into_bytes(),
+        collected.into_bytes(),
         feature("Polygon", &metres, &crs("WGS 84 / UTM zone 32N")).into_bytes(),
         bare.into_bytes(),
         one.replace(',', ",\r\n").into_bytes(),

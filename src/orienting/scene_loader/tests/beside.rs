@@ -292,6 +292,25 @@ fn the_place_that_orient_finds_is_read_beside_its_model() {
         assert_eq!(survey.anchor.map(|anchor| anchor.lon_deg), lon, "{text}");
         assert_eq!(survey.epsg, epsg, "{text}");
     }
+    // Footprints with latitude before longitude lie there when these are exchanged.
+    let [low, high] = [-4e-5, 4e-5].map(|by| format!("[{},{}]", 49.0 + by, 8.4 + by));
+    let houses = format!(
+        "{{\"type\":\"Polygon\",\"coordinates\":[[{low},[49.00004,8.39996],{high},{low}]]}}"
+    );
+    let text = report(place, "null", true);
+    let files = with(&[
+        ("colmap/orientation.json", text.as_bytes()),
+        ("houses.geojson", houses.as_bytes()),
+    ]);
+    let words = "latitude before longitude";
+    let scene = load_scene(&files, &all()).unwrap();
+    let is_said = scene.warnings.iter().any(|said| said.contains(words));
+    assert!(is_said && scene.known.footprints.is_none());
+    let options = LoadOptions {
+        footprints: Some("houses.geojson".to_owned()),
+        ..all()
+    };
+    refused(&files, &options, &[words, "exchange them"]);
     // One of another folder is of another model.
     let text = report(place, "null", true);
     let scene = load_scene(&with(&[("b/orientation.json", text.as_bytes())]), &all()).unwrap();

@@ -11,6 +11,7 @@ use super::places::{RECEIVER_SIGMA_M, upright_fit};
 use super::stated::{StatedPose, spread};
 use super::vertical::{ByAngles, NEARER_TO_A_WALL, angle_between};
 use crate::base::math;
+use crate::orienting::known::MOST_DATUM_M;
 use crate::orienting::orientation::{Anchor, geocentric_of};
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::similarity::Similarity;
@@ -35,6 +36,8 @@ pub(in super::super) struct ByControl<'a> {
     pub anchor: Option<Anchor>,
     /// Longitude and latitude of a point of the frame, degrees, where its system is known.
     pub on_earth: &'a dyn Fn(&Point3<f64>) -> Option<[f64; 2]>,
+    /// Height of the photographs above those in their headers, metres.
+    pub above_headers_m: Option<f64>,
 }
 
 /// What speaks against a placement.
@@ -52,12 +55,19 @@ pub(in super::super) enum Doubt {
     OtherScale { factor: f64 },
     /// So far from the positions in the headers, metres.
     Elsewhere { metres: f64 },
+    /// So far above the heights in the headers, metres.
+    OtherHeight { metres: f64 },
 }
 
 /// No datum is as far from that of the receivers, metres: Tokyo's is off by 450 m.
 const OTHER_PLACE_M: f64 = 1000.0;
 
-const CHECKS: [fn(&Placement) -> Option<Doubt>; 4] = [looks_up, off_angles, other_scale, elsewhere];
+/// Neither a map nor a receiver changes distances by as much: where control points and headers
+/// differ by more, the marks or the coordinates are others.
+const OTHER_SCALE: f64 = 1.1;
+
+const CHECKS: [fn(&Placement) -> Option<Doubt>; 5] =
+    [looks_up, off_angles, other_scale, elsewhere, other_height];
 
 /// All that speaks against a placement.
 pub(in super::super) fn doubts(placement: &Placement) -> Vec<Doubt> {
@@ -67,7 +77,11 @@ pub(in super::super) fn doubts(placement: &Placement) -> Vec<Doubt> {
 impl Doubt {
     /// Can a placement not be true with it, whatever else is known?
     pub(in super::super) fn is_impossible(&self) -> bool {
-        matches!(self, Self::LooksUp { is_steep: true, .. })
+        match self {
+            Self::LooksUp { is_steep, .. } => *is_steep,
+            Self::OtherScale { factor } => math::ln(*factor).abs() > math::ln(OTHER_SCALE),
+            _ => false,
+        }
     }
 
     /// In words that follow the name of what gave the placement.
@@ -87,6 +101,11 @@ impl Doubt {
             Self::Elsewhere { metres } => format!(
                 "lie {:.0} km from the positions in the headers",
                 metres / 1000.0
+            ),
+            Self::OtherHeight { metres } => format!(
+                "lie {:.0} m {} the heights in the headers, and no datums of heights are as far apart",
+                metres.abs(),
+                if *metres < 0.0 { "below" } else { "above" }
             ),
         }
     }
@@ -148,6 +167,11 @@ fn elsewhere(p: &Placement) -> Option<Doubt> {
     });
     let metres = math::median(&mut placed.collect::<Vec<f64>>())?;
     (metres > OTHER_PLACE_M).then_some(Doubt::Elsewhere { metres })
+}
+
+fn other_height(p: &Placement) -> Option<Doubt> {
+    let metres = p.control?.above_headers_m?;
+    (metres.abs() > MOST_DATUM_M).then_some(Doubt::OtherHeight { metres })
 }
 
 /// Standard deviation of the vertical by points of this noise, radians.

@@ -31,7 +31,7 @@ mod words;
 use nalgebra::{Point3, Rotation3, Vector3};
 
 pub(super) use self::checks::{ByControl, Doubt, Placement, doubts, tilt_sigma};
-use self::positions::by_positions;
+use self::positions::by_true_positions;
 pub(super) use self::stated::{StatedPose, spread};
 use self::stated::{centers, points};
 pub(super) use self::vertical::rotation_of_angles;
@@ -115,7 +115,9 @@ pub(super) fn to_frame(
     let angles = up_of_angles(block, stated, applies_fix);
     let mut notes = words::of_angles(&angles, applies_fix, paths);
     if let Some(anchor) = anchor {
-        match by_positions(block, stated, &angles) {
+        let (found, mistake) = by_true_positions(block, stated, &anchor, &angles);
+        notes.extend(mistake.map(words::of_mistake));
+        match found {
             Ok((similarity, found, doubt)) => {
                 similarity.apply(block);
                 let [stated, heights] = found.stated;

@@ -21,6 +21,15 @@ pub(in super::super) struct StatedPose {
     pub yaw_pitch_roll: Option<[f64; 3]>,
 }
 
+/// The same, of which no height counts.
+pub(super) fn without_heights(stated: &[StatedPose]) -> Vec<StatedPose> {
+    let lacking = stated.iter().map(|s| StatedPose {
+        lacks_height: true,
+        ..s.clone()
+    });
+    lacking.collect()
+}
+
 pub(super) fn centers(block: &Block) -> Vec<Point3<f64>> {
     let poses = block.photos.iter().filter_map(|p| p.pose.as_ref());
     poses.map(|pose| pose.center).collect()

@@ -5,6 +5,7 @@ use nalgebra::Matrix3;
 use super::*;
 use crate::base::geometry::rotation_from_axis_angle;
 use crate::base::math;
+use crate::orienting::orientation::geocentric_of;
 use crate::orienting::structure_from_motion::bundle::tests::planted;
 use crate::orienting::structure_from_motion::random::Random;
 
@@ -182,7 +183,7 @@ fn angles_that_contradict_are_left_out_and_their_mistake_is_named() {
     let (deg, _, notes) = with_angles(|_, a| a, false);
     assert!(deg < 0.01 && notes.is_empty(), "{deg} {notes}");
     type Change = fn(usize, [f64; 3]) -> [f64; 3];
-    let cases: [(Change, &str); 10] = [
+    let cases: [(Change, &str); 11] = [
         (
             |i, [y, p, r]| {
                 if i % 2 == 0 {
@@ -216,6 +217,7 @@ fn angles_that_contradict_are_left_out_and_their_mistake_is_named() {
             "counted from straight",
         ),
         (|_, [y, p, r]| [y, p - 90.0, r], "counted from the horizon"),
+        (|_, angles| angles.map(f64::to_radians), "angles in radians"),
         (
             |i, [y, p, r]| {
                 if i < 2 {
@@ -245,6 +247,18 @@ fn angles_that_contradict_are_left_out_and_their_mistake_is_named() {
         };
         assert_eq!(agreeing == 9, is_explained, "{i}");
     }
+}
+
+#[test]
+fn angles_that_scatter_by_more_than_half_a_right_angle_say_nothing() {
+    // Up is above, left and right of the image by turns.
+    let turned = [[0.0; 3], [0.0, -90.0, 90.0], [0.0, -90.0, -90.0]];
+    let (deg, basis, notes) = with_angles(|i, _| turned[i % 3], false);
+    assert_eq!(basis, FrameBasis::MainPlane, "{notes}");
+    assert!(
+        deg < 4.0 && notes.contains("contradict each other"),
+        "{deg} {notes}"
+    );
 }
 
 #[test]
@@ -347,18 +361,32 @@ fn positions_that_give_nothing_are_said_to() {
 #[test]
 fn headers_that_are_wrong_in_usual_ways_never_turn_the_block_over() {
     type Change = fn(usize, Point3<f64>) -> Point3<f64>;
-    let all: [(&str, Change, bool, &str); 12] = [
+    let all: [(&str, Change, bool, &str); 13] = [
         (
             "heights below zero",
             |_, p| Point3::new(p.x, p.y, -p.z),
             true,
-            "",
+            "with heights of the other sign: only their plan",
         ),
         (
             "heights in feet",
             |_, p| Point3::new(p.x, p.y, p.z / 0.3048),
             true,
-            "",
+            "with heights in feet: only their plan",
+        ),
+        (
+            "latitude before longitude",
+            |_, p| {
+                let [lat, lon, height] = Anchor {
+                    lon_deg: 49.0,
+                    lat_deg: 8.4,
+                    ..ANCHOR
+                }
+                .geographic(&p);
+                ANCHOR.local(&geocentric_of(lon, lat, height))
+            },
+            false,
+            "latitude and longitude exchanged: they were not used",
         ),
         ("all in feet", |_, p| p / 0.3048, true, ""),
         (
@@ -438,8 +466,11 @@ fn headers_that_are_wrong_in_usual_ways_never_turn_the_block_over() {
             let tilt = off(&block, &truth).1.to_degrees();
             let is_by_positions = matches!(basis, FrameBasis::Positions { .. });
             // Heights that are wrong as a whole tilt a small block, by what their residuals allow.
-            let is_tilted = ["heights in feet", "a barometer that stuck"].contains(what);
-            let most = if is_tilted { 20.0 } else { 6.0 };
+            let most = if *what == "a barometer that stuck" {
+                20.0
+            } else {
+                6.0
+            };
             if tilt > most || is_by_positions != *is_placed || !said.contains(words) {
                 wrong.push(format!(
                     "{what}, {has_angles}: {tilt} degrees, {basis:?} {said}"

@@ -26,7 +26,7 @@ const ANGLE_SIGMA: f64 = std::f64::consts::PI / 180.0;
 type Meant = fn([f64; 3]) -> Option<[f64; 3]>;
 
 /// Usual mistakes in the angles of a photograph, the likelier first.
-const MISTAKES: [(&str, Meant); 5] = [
+const MISTAKES: [(&str, Meant); 6] = [
     (
         "a roll of 180 degrees, the yaw turned by as much, of cameras that were not turned over",
         { |[y, p, r]| (r.abs() > 90.0).then_some([y + 180.0, p, r + 180.0]) },
@@ -46,6 +46,15 @@ const MISTAKES: [(&str, Meant); 5] = [
         "a pitch counted from the horizon where this camera's is counted from straight down",
         { |[y, p, r]| (p < -90.0).then_some([y, p + 90.0, r]) },
     ),
+    ("angles in radians instead of degrees", {
+        |angles| {
+            let is_turn = |v: f64| v.abs() <= std::f64::consts::TAU;
+            angles
+                .into_iter()
+                .all(is_turn)
+                .then(|| angles.map(f64::to_degrees))
+        }
+    }),
 ];
 
 /// The vertical by stated angles.
@@ -116,13 +125,18 @@ pub(super) fn up_of_angles(block: &Block, stated: &[StatedPose], is_mended: bool
     let closer = |a: f64, b: f64| a < b - ANGLE_SIGMA;
     let explained = (explained.filter(|_| !contradicted.is_empty()))
         .reduce(|best, next| if closer(next.0, best.0) { next } else { best });
-    // The plane of the points may be a wall: angles that agree count then, if no mistake brings
-    // them to the ground, and unless they turn the block over.
-    let before_a_wall = || agreement(&turns, &normal, -NEARER_TO_A_WALL);
+    // The plane of the points may be a wall: angles that most share count then, if no mistake
+    // brings them to the ground, and unless they turn the block over.
+    let before_a_wall = || {
+        let found = agreement(&turns, &normal, -NEARER_TO_A_WALL)?;
+        (2 * found.photos[0].len() > turns.len()).then_some(found)
+    };
     if let (None, None, Some(found)) = (&agreed, &explained, before_a_wall()) {
+        let is_other = |i: &usize| !found.photos[0].contains(i);
         return AnglesFinding {
+            contradicted: turns.iter().map(|(i, _)| *i).filter(is_other).collect(),
             by_angles: Some(found),
-            ..AnglesFinding::default()
+            mistake: None,
         };
     }
     let mistake = explained.as_ref().map(|(_, words, _)| *words);
@@ -184,7 +198,11 @@ fn agreement(
         .min_by(|a, b| a.0.total_cmp(&b.0))?
         .1;
     let scale = math::median(&mut from(middle))?.max(ANGLE_SIGMA);
-    let most = LARGEST_RESIDUAL_SIGMAS * scale;
+    // However far they scatter, what is nearer to the horizon than to their middle does not agree.
+    let most = math::smaller(
+        LARGEST_RESIDUAL_SIGMAS * scale,
+        math::acos(NEARER_TO_A_WALL),
+    );
     let agreeing: Vec<usize> = (ups.iter().zip(from(middle)))
         .filter_map(|((i, _), angle)| (angle <= most).then_some(*i))
         .collect();

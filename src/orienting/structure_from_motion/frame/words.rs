@@ -2,9 +2,10 @@
 
 use super::checks::Doubt;
 use super::places::TooNear;
-use super::positions::NoPositions;
+use super::positions::{Mistake, NoPositions};
 use super::vertical::AnglesFinding;
 use crate::base::error::listed;
+use crate::orienting::structure_from_motion::ground_control::GeoList;
 
 /// Of photographs whose headers state nothing.
 pub(in super::super) const NOTHING_STATED: &str = "neither positions nor angles are stated";
@@ -42,6 +43,20 @@ pub(super) fn of_heights(doubt: &Doubt) -> String {
     )
 }
 
+/// Positions that a usual mistake explains.
+pub(super) fn of_mistake(mistake: &Mistake) -> String {
+    let end = match mistake.is_of_heights {
+        true => "only their plan was taken",
+        false => "they were not used",
+    };
+    format!(
+        "the stated positions do not fit the photographs, and fit them with {}: {end}; correct them \
+         in the headers or in {}",
+        mistake.words,
+        GeoList::FILE
+    )
+}
+
 /// Positions that the others contradict.
 pub(super) fn of_contradicted(photos: &[usize], paths: &[&str]) -> Option<String> {
     let names = listed(photos.iter().map(|&i| paths[i]));
@@ -57,7 +72,7 @@ pub(super) fn of_contradicted(photos: &[usize], paths: &[&str]) -> Option<String
 /// Why positions that are stated do not give the frame.
 pub(super) fn of_no_positions(why: &NoPositions) -> Option<String> {
     match why {
-        NoPositions::Few { stated: 0 } => None,
+        NoPositions::Few { stated: 0 } | NoPositions::Exchanged => None,
         NoPositions::Few { stated } => Some(format!(
             "{stated} of the oriented photographs state a position, and a frame needs three"
         )),

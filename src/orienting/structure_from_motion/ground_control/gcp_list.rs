@@ -125,7 +125,8 @@ impl GroundControl {
         }
         let is_on_map = matches!(system.units.plan, PlanUnit::Length(_));
         let mut control = Self {
-            system: stated.to_owned(),
+            // Well-known text has its name in the first quotation marks.
+            system: stated.split('"').nth(1).unwrap_or(stated).to_owned(),
             epsg: system.epsg.filter(|_| is_on_map),
             units: system.units,
             anchor: None,

@@ -14,6 +14,8 @@ use crate::orienting::structure_from_motion::block::Block;
 pub(super) enum Mistake {
     AxesExchanged,
     HeightBeforeNorthing,
+    HeightSign,
+    ZonePrefix,
     LongitudeSign,
     LatitudeSign,
     OtherUnit(LinearUnit),
@@ -31,6 +33,8 @@ impl Mistake {
                 "x and y exchanged (northing before easting, latitude before longitude)".into()
             }
             Self::HeightBeforeNorthing => "the height before the northing".into(),
+            Self::HeightSign => "heights of the other sign".into(),
+            Self::ZonePrefix => "the number of the zone before the easting".into(),
             Self::LongitudeSign => "longitudes of the other sign (W without a minus)".into(),
             Self::LatitudeSign => "latitudes of the other sign (S without a minus)".into(),
             Self::OtherUnit(unit) => format!("coordinates in {}", unit.words()),
@@ -59,6 +63,8 @@ impl Mistake {
         match self {
             Self::AxesExchanged => stated(|p| p.swap(0, 1)),
             Self::HeightBeforeNorthing => stated(|p| p.swap(1, 2)),
+            Self::HeightSign => stated(|p| p[2] = -p[2]),
+            Self::ZonePrefix => stated(|p| p[0] %= ZONE_M),
             Self::LongitudeSign => stated(|p| p[0] = -p[0]),
             Self::LatitudeSign => stated(|p| p[1] = -p[1]),
             Self::OtherUnit(unit) => {
@@ -79,9 +85,13 @@ impl Mistake {
         let mut possible = vec![
             Self::AxesExchanged,
             Self::HeightBeforeNorthing,
+            Self::ZonePrefix,
             Self::RowsFromBelow,
             Self::RowBeforeColumn,
         ];
+        if control.points.iter().any(|p| p.stated[2] < 0.0) {
+            possible.push(Self::HeightSign);
+        }
         match control.units.plan {
             PlanUnit::Length(own) => {
                 // The two feet differ by what no photograph shows.
@@ -98,6 +108,9 @@ impl Mistake {
         possible
     }
 }
+
+/// Numbers of zones stand before eastings as multiples of this, metres.
+const ZONE_M: f64 = 1e6;
 
 /// Longest side of a JPEG, pixels: no original is larger.
 const LARGEST_SIDE_PX: f64 = 65_535.0;

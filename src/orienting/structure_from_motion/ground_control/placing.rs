@@ -6,7 +6,7 @@ use super::fit::{Fit, fitted, without_keypoints};
 use super::gcp_list::GroundControl;
 use super::marks::Marks;
 use super::mistakes::{Mistake, under};
-use crate::base::geometry::mean_point;
+use crate::base::math::median;
 use crate::orienting::orientation::{Anchor, LinearUnit, PlanUnit, SystemUnits};
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::frame::{
@@ -29,8 +29,22 @@ struct Reading {
     control: GroundControl,
     fit: Fit,
     doubts: Vec<Doubt>,
-    /// Mean height of the photographs, metres.
-    photographs_m: f64,
+    /// Mean height of the photographs above those in their headers, metres.
+    above_headers_m: Option<f64>,
+}
+
+impl Beside<'_> {
+    /// How far the heights in the headers are below those of a fit, metres.
+    fn below(&self, block: &Block, fit: &Fit, control: &GroundControl) -> Option<f64> {
+        let anchor = self.anchor?;
+        let off = (block.photos.iter().zip(self.stated)).filter_map(|(photo, stated)| {
+            let own = stated.position.filter(|_| !stated.lacks_height)?;
+            let placed = fit.similarity.point(&photo.pose.as_ref()?.center);
+            let height = (control.anchor).map_or(placed.z, |zero| zero.geographic(&placed)[2]);
+            Some(height - anchor.geographic(&own)[2])
+        });
+        median(&mut off.collect::<Vec<f64>>())
+    }
 }
 
 /// Largest distance of the sea's level from the ellipsoid, metres (EGM2008: -107 to 86), by which
@@ -56,7 +70,7 @@ pub(in super::super) fn to_control(
     });
     let fits: Vec<Result<Reading, String>> = fits.collect();
     let why = fits.iter().find_map(|fit| fit.as_ref().err().cloned());
-    let (as_stated, of_heights) = with_heights(fits.into_iter().flatten().collect(), beside);
+    let (as_stated, of_heights) = with_heights(fits.into_iter().flatten().collect());
     if let Some(reading) = as_stated.as_ref().filter(|r| r.is_sound()) {
         words.extend(of_heights);
         return (Some(reading.place(block)), words);
@@ -75,11 +89,16 @@ pub(in super::super) fn to_control(
     };
     match &explained[..] {
         [] => {
-            words.push(format!(
-                "{speaks}: check coordinates, their system and order, and marks in {}",
-                GroundControl::FILE
-            ));
             let possible = as_stated.filter(|r| !r.doubts.iter().any(Doubt::is_impossible));
+            words.push(format!(
+                "{speaks}: check coordinates, their system and order, and marks in {}{}",
+                GroundControl::FILE,
+                if possible.is_some() {
+                    ""
+                } else {
+                    ". They were not used"
+                }
+            ));
             (possible.map(|r| r.place(block)), words)
         }
         [(mistake, reading)] if beside.applies_fix => {
@@ -148,7 +167,7 @@ fn heights_read(control: &GroundControl) -> Vec<GroundControl> {
 }
 
 /// The reading whose heights fit the plan and the headers, and the words of that choice.
-fn with_heights(mut readings: Vec<Reading>, beside: &Beside) -> (Option<Reading>, Option<String>) {
+fn with_heights(mut readings: Vec<Reading>) -> (Option<Reading>, Option<String>) {
     if readings.len() < 2 {
         return (readings.pop(), None);
     }
@@ -161,7 +180,7 @@ fn with_heights(mut readings: Vec<Reading>, beside: &Beside) -> (Option<Reading>
         order => Some(usize::from(order.is_gt())),
     };
     let by_headers = || {
-        let off = [0, 1].map(|i| readings[i].above_headers(beside));
+        let off = [0, 1].map(|i| readings[i].above_headers_m);
         let [Some(a), Some(b)] = off.map(|o| o.map(f64::abs)) else {
             return None;
         };
@@ -170,7 +189,7 @@ fn with_heights(mut readings: Vec<Reading>, beside: &Beside) -> (Option<Reading>
         is_sure.then(|| usize::from(b < a))
     };
     let (taken, reason) = match (by_fit, by_headers()) {
-        (Some(i), _) => (i, "which fits the photographs"),
+        (Some(i), _) => (i, "which fits the photographs and their headers"),
         (None, Some(i)) => (i, "which fits the heights in the headers"),
         (None, None) => (0, "as the plan; say EPSG:CODE+5703 for heights in metres"),
     };
@@ -190,9 +209,11 @@ fn with_heights(mut readings: Vec<Reading>, beside: &Beside) -> (Option<Reading>
 impl Reading {
     fn of(control: GroundControl, fit: Fit, block: &Block, beside: &Beside) -> Self {
         let on_earth = |p: &Point3<f64>| control.on_earth(p);
+        let above_headers_m = beside.below(block, &fit, &control);
         let against = ByControl {
             anchor: beside.anchor,
             on_earth: &on_earth,
+            above_headers_m,
         };
         let doubts = control_doubts(
             block,
@@ -201,14 +222,11 @@ impl Reading {
             fit.tilt_sigma,
             against,
         );
-        let centers = (block.photos.iter())
-            .filter_map(|photo| Some(fit.similarity.point(&photo.pose.as_ref()?.center)));
-        let photographs_m = mean_point(&centers.collect::<Vec<_>>()).z;
         Self {
             control,
             fit,
             doubts,
-            photographs_m,
+            above_headers_m,
         }
     }
 
@@ -225,15 +243,6 @@ impl Reading {
         }
         let against: Vec<String> = self.doubts.iter().map(Doubt::words).collect();
         format!("the ground control points {}", against.join(", and "))
-    }
-
-    /// How far the photographs are above the heights in their headers, metres.
-    fn above_headers(&self, beside: &Beside) -> Option<f64> {
-        let anchor = beside.anchor?;
-        let stated = beside.stated.iter().filter(|s| !s.lacks_height);
-        let stated: Vec<_> = stated.filter_map(|s| s.position).collect();
-        let headers = (!stated.is_empty()).then(|| anchor.geographic(&mean_point(&stated))[2])?;
-        Some(self.photographs_m - headers)
     }
 
     /// Brings the block into the frame.

@@ -369,16 +369,18 @@ fn names_are_matched_as_those_of_orientations_and_what_fits_nothing_is_named() {
 #[test]
 fn headers_that_contradict_control_are_said() {
     let (truth, block, paths, text) = spoilt(|_, _| {});
+    let (.., with_zone) = spoilt(|place, _| place[0] += 32e6);
+    let (.., below) = spoilt(|place, _| place[2] = -300.0 - place[2]);
     let anchor = |lon_deg, lat_deg| crate::orienting::orientation::Anchor {
         lon_deg,
         lat_deg,
         height_m: 0.0,
     };
     let names: Vec<&str> = paths.iter().map(String::as_str).collect();
-    let said = |scale: f64, anchor| {
+    let said = |text: &str, scale: f64, up_m: f64, anchor| {
         let stated: Vec<StatedPose> = (truth.photos.iter())
             .map(|p| StatedPose {
-                position: p.pose.as_ref().map(|pose| pose.center * scale),
+                position: (p.pose.as_ref()).map(|pose| pose.center * scale + Vector3::z() * up_m),
                 ..StatedPose::default()
             })
             .collect();
@@ -388,17 +390,43 @@ fn headers_that_contradict_control_are_said() {
             anchor: Some(anchor),
             applies_fix: false,
         };
-        let control = GroundControl::read("gcp_list.txt", &text).unwrap();
+        let control = GroundControl::read("gcp_list.txt", text).unwrap();
         let (basis, words) = to_control(&mut block.clone(), &control, &beside);
         (basis.is_some(), words.join("\n"))
     };
     let here = anchor(8.0742, 48.8599);
-    assert_eq!(said(1.0, here), (true, String::new()));
-    let (is_taken, words) = said(1.0, anchor(-71.0, 42.0));
-    assert!(
-        is_taken && words.contains("km from the positions in the headers"),
-        "{words}"
-    );
-    let (_, words) = said(0.3048, here);
-    assert!(words.contains("3.281 times as far apart"), "{words}");
+    assert_eq!(said(&text, 1.0, 100.0, here), (true, String::new()));
+    for (text, scale, up_m, anchor, is_used, expected) in [
+        (
+            &text,
+            1.0,
+            0.0,
+            anchor(-71.0, 42.0),
+            true,
+            "km from the positions in the headers",
+        ),
+        (
+            &text,
+            1.0,
+            660.0,
+            here,
+            true,
+            "lie 660 m below the heights in the headers",
+        ),
+        (&text, 0.3048, 0.0, here, false, "3.281 times as far apart"),
+        (
+            &with_zone,
+            1.0,
+            0.0,
+            here,
+            false,
+            "the number of the zone before the easting",
+        ),
+        (&below, 1.0, 300.0, here, false, "heights of the other sign"),
+    ] {
+        let (is_taken, words) = said(text, scale, up_m, anchor);
+        assert_eq!(is_taken, is_used, "{words}");
+        assert!(words.contains(expected), "{words}");
+        assert_eq!(words.contains("not used"), !is_used, "{words}");
+    }
 }

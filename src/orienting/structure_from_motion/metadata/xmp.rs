@@ -33,7 +33,8 @@ pub(super) fn position(xmp: &str) -> Option<[f64; 2]> {
 pub(super) fn yaw_pitch_roll(xmp: &str) -> Option<[f64; 3]> {
     let all = |names: [&str; 3]| {
         let [yaw, pitch, roll] = names.map(|name| number(xmp, name));
-        Some([yaw?, pitch?, roll?])
+        // Three zeros are fields that nobody filled.
+        Some([yaw?, pitch?, roll?]).filter(|angles| *angles != [0.0; 3])
     };
     let of_gimbal = all(["GimbalYawDegree", "GimbalPitchDegree", "GimbalRollDegree"]);
     // Cameras that look down count their pitch from there.
@@ -53,5 +54,10 @@ mod tests {
         assert_eq!(number(xmp, "GimbalPitchDegree"), Some(-45.0));
         assert_eq!(number(xmp, "GimbalRollDegree"), None);
         assert_eq!(yaw_pitch_roll(xmp), None);
+        let level = |yaw: &str| {
+            let rest = "GimbalPitchDegree=\"0.0\" GimbalRollDegree=\"+0.00\"";
+            yaw_pitch_roll(&format!(" GimbalYawDegree=\"{yaw}\" {rest}"))
+        };
+        assert_eq!([level("0"), level("-3")], [None, Some([-3.0, 0.0, 0.0])]);
     }
 }
