@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Point3, RowVector3, Vector3};
 
 use super::text::data_lines;
 use crate::base::error::{Error, Result};
-use crate::orienting::orientation::image_orientation::Orientation;
+use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads a matrix; the image has the name of the file.
 pub(crate) fn read(path: &str, text: &str) -> Result<Orientation> {
@@ -37,20 +37,7 @@ pub(crate) fn read(path: &str, text: &str) -> Result<Orientation> {
         decompose(&m, &column).ok_or_else(|| refuse("its left 3 x 3 part is singular"))?;
     k[(0, 2)] += 0.5;
     k[(1, 2)] += 0.5;
-    Ok(Orientation {
-        image: stem(path).to_owned(),
-        source: path.to_owned(),
-        k,
-        distortion: None,
-        r,
-        center,
-        size: None,
-        from_middle: false,
-        angles: None,
-        readings: Vec::new(),
-        crop: None,
-        group: None,
-    })
+    Ok(pinhole(stem(path), path, k, r, center))
 }
 
 fn stem(path: &str) -> &str {

@@ -28,7 +28,7 @@ mod tests;
 mod vertical;
 mod words;
 
-use nalgebra::{Point3, Rotation3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 
 pub(super) use self::checks::{ByControl, Doubt, Placement, doubts, tilt_sigma};
 use self::positions::by_true_positions;
@@ -126,9 +126,8 @@ pub(super) fn to_frame(
                 // Heights that do not fit are none.
                 let heights = if doubt.is_some() { 0 } else { heights };
                 if heights == 0 {
-                    let middle = mean_point(&points(block));
                     let to_ground = Similarity {
-                        shift: -Vector3::new(0.0, 0.0, middle.z),
+                        shift: -Vector3::z() * mean_point(&points(block)).z,
                         ..Similarity::default()
                     };
                     to_ground.apply(block);
@@ -158,10 +157,9 @@ pub(super) fn to_frame(
     let (cameras, points) = (centers(block), points(block));
     let (camera, point) = (mean_point(&cameras), mean_point(&points));
     let scale = ASSUMED_HEIGHT_M / (camera.z - point.z).abs().max(1e-9);
-    let ground = Point3::new(camera.x, camera.y, point.z);
     let similarity = Similarity {
         scale,
-        shift: -ground.coords * scale,
+        shift: Vector3::new(camera.x, camera.y, point.z) * -scale,
         ..Similarity::default()
     };
     similarity.apply(block);

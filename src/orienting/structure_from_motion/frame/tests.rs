@@ -1,6 +1,6 @@
 //! Planted blocks, and what is stated of them.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Point3};
 
 use super::*;
 use crate::base::geometry::rotation_from_axis_angle;
