@@ -15,7 +15,7 @@ use super::division::Division;
 use super::join::{CellPart, Joined, join};
 use super::look::{self, FirstLook, Sightings, Site};
 use super::model_parts::{subset, walls_of};
-use super::seen_ground::SeenGround;
+use super::seen_ground::{SeenGround, options_of};
 use super::tile::{Cell, Tile};
 use super::work_plan::WorkPlan;
 use crate::base::error::{Error, Result};
@@ -203,7 +203,7 @@ impl Area {
             WorkPlan::new(files, options, self.heights, laid, &seen.ground)
         };
         self.work = planned(&self.options)?;
-        while let Some(reduction) = self.work.fitting(&self.options)
+        while let Some(reduction) = self.work.fitting()
             && !self.is_reduction_stated
         {
             self.options.reduction = Some(reduction);
@@ -240,7 +240,8 @@ impl Area {
         )
     }
 
-    /// Works off the next tile in their order, and says which; `None` when all are done. A tile that
+    /// Works off the next tile in their order, and says which; `None` when all are done. A tile
+    /// that
     /// the views do not show is left out; an error says which photograph cannot be had any more.
     /// `progress` hears fractions of this tile's work.
     pub fn step(
@@ -263,7 +264,8 @@ impl Area {
         Ok(Some((index, self.reports.entry(index).or_insert(report))))
     }
 
-    /// One model of all tiles, as files, whatever the order in which they were done; the first error
+    /// One model of all tiles, as files, whatever the order in which they were done; the first
+    /// error
     /// where no tile could be read. `seconds` of each tile go into `report.json` and may be empty.
     pub fn finish(mut self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
         let joined = self.join()?;
@@ -387,15 +389,6 @@ impl WorkedTile {
             outcome,
             is_left_out: self.parts.is_empty() && self.first_error.is_some(),
         }
-    }
-}
-
-/// The options with which a cell is loaded, on ground that a first look has shown.
-pub(super) fn options_of(cell: &Cell, options: &LoadOptions, ground: &SeenGround) -> LoadOptions {
-    LoadOptions {
-        roi: Some(cell.region),
-        ground_range: ground.range(cell.region),
-        ..options.clone()
     }
 }
 

@@ -3,9 +3,10 @@
 //!
 //! Invariant: outcomes that were kept give the model of [`Area::step`], bit by bit.
 
-use super::area::{Area, TileReport, options_of};
+use super::area::{Area, TileReport};
 use super::join::join;
 use super::part_file::{PartKey, TileOutcome};
+use super::seen_ground::options_of;
 use crate::base::error::{Error, Result};
 use crate::base::execution::Listener;
 use crate::orienting::orientation::InputFile;
@@ -36,8 +37,8 @@ impl Area {
         Some(())
     }
 
-    /// What the cells of a tile came to, which have been worked off, as bytes; `None` where there is
-    /// no such tile.
+    /// What the cells of a tile came to, which have been worked off, as bytes; `None` where there
+    /// is no such tile.
     pub fn outcome_of(&mut self, index: usize) -> Option<Vec<u8>> {
         let tile = self.tiles.get(index)?;
         let worked = std::mem::take(&mut self.begun);

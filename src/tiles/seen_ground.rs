@@ -7,6 +7,7 @@ use nalgebra::{Point2, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::tile::Cell;
+use crate::orienting::scene_loader::LoadOptions;
 use crate::pipeline::Run;
 use crate::planes::terrain::Ground;
 
@@ -119,6 +120,15 @@ fn blocks_in([x0, y0, x1, y1]: [f64; 4]) -> impl Iterator<Item = Block> {
     let [[first_row, first], [last_row, last]] =
         [[x0, y0], [x1, y1]].map(|corner| block_at(corner.into()));
     (first_row..=last_row).flat_map(move |row| (first..=last).map(move |column| [row, column]))
+}
+
+/// The options with which a cell is loaded, on ground that a first look has shown.
+pub(super) fn options_of(cell: &Cell, options: &LoadOptions, ground: &SeenGround) -> LoadOptions {
+    LoadOptions {
+        roi: Some(cell.region),
+        ground_range: ground.range(cell.region),
+        ..options.clone()
+    }
 }
 
 #[cfg(test)]

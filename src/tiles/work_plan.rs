@@ -3,17 +3,19 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::area::options_of;
 use super::look::Site;
-use super::seen_ground::SeenGround;
+use super::seen_ground::{SeenGround, options_of};
 use super::tile::{CELL_M, Cell, Tile};
 use crate::base::error::{Error, Result};
 use crate::base::math::{larger, smaller};
 use crate::orienting::orientation::InputFile;
-use crate::orienting::scene_loader::{Flight, LoadOptions, ViewWindow, limit_mb};
+use crate::orienting::scene_loader::{Flight, LoadOptions, ViewWindow};
 
 /// Photographs are not reduced further for want of memory. Assumption: no roof is seen then.
 const MOST_REDUCTION: f64 = 16.0;
+
+/// By so much at a time photographs are reduced for want of memory.
+const REDUCED_BY: f64 = 1.1;
 
 /// The tiles of an area with what their cells read, and when.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -102,15 +104,13 @@ impl WorkPlan {
         })
     }
 
-    /// By how much photographs are to be reduced so that the cells take no more memory than is
-    /// allowed, about; `None` where they take no more, or nothing helps.
-    pub(super) fn fitting(&self, options: &LoadOptions) -> Option<f64> {
-        let most = self.tiles.iter().map(|tile| tile.memory_mb).max()?;
-        let limit = limit_mb(options.memory_mb);
-        let tenths = 10.0 * self.reduction;
-        let by = (most as f64 / limit as f64).sqrt();
-        let fitting = larger((tenths * by).ceil(), tenths.round() + 1.0) / 10.0;
-        (most > limit && self.reduction < MOST_REDUCTION).then_some(fitting)
+    /// By how much photographs are to be reduced so that all cells can be loaded; `None` where they
+    /// can, or nothing helps.
+    pub(super) fn fitting(&self) -> Option<f64> {
+        let mut cells = self.tiles.iter().flat_map(|tile| &tile.cells);
+        let is_any_too_large = cells.any(|cell| cell.left_out.is_some() && !cell.views.is_empty());
+        let fitting = (10.0 * REDUCED_BY * self.reduction).ceil() / 10.0;
+        (is_any_too_large && self.reduction < MOST_REDUCTION).then_some(fitting)
     }
 }
 

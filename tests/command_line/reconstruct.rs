@@ -377,8 +377,8 @@ fn an_orientation_that_contradicts_the_images_is_named() {
 fn too_much_for_memory_is_refused_with_the_figure() {
     let scene = Scene::new();
     scene.is_refused(
-        &["--memory", "50"],
-        &["MB of memory, more than 50 MB", "region of interest"],
+        &["--memory", "30"],
+        &["MB of memory, more than 30 MB", "region of interest"],
     );
 }
 

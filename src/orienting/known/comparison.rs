@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::base::math::{exp, hypot, ln};
+use crate::orienting::orientation::MOST_DATUM_M;
 
 /// What can be known beforehand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,10 +76,6 @@ impl KnownShift {
         hypot(self.by.x, self.by.y) > plan || self.by.z.abs() > height
     }
 }
-
-/// No datums of heights are further apart, metres: the geoid lies between 107 below and 86 above
-/// the ellipsoid, and datums of charts and old levels some metres beside it.
-pub const MOST_DATUM_M: f64 = 200.0;
 
 /// What belongs here with less probability is contradicted.
 const DOUBTFUL: f64 = 0.5;

@@ -36,7 +36,7 @@ mod system;
 #[cfg(test)]
 mod tests;
 
-pub use comparison::{KnownComparison, KnownShift, KnownThing, KnownVerdict, MOST_DATUM_M};
+pub use comparison::{KnownComparison, KnownShift, KnownThing, KnownVerdict};
 pub(crate) use comparison::{belongs_here, best_shift};
 pub use footprint::Footprint;
 pub use height_grid::HeightGrid;

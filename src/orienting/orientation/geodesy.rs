@@ -11,6 +11,10 @@ pub(crate) const A_M: f64 = 6_378_137.0;
 /// Square of its first eccentricity.
 const E2: f64 = 6.694_379_990_141_316e-3;
 
+/// No datums of heights are further apart, metres: the geoid lies between 107 below and 86 above
+/// the ellipsoid, and datums of charts and old levels some metres beside it.
+pub const MOST_DATUM_M: f64 = 200.0;
+
 /// Longitude and latitude of a frame's zero, degrees, and the ellipsoidal height that its z starts
 /// from, metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

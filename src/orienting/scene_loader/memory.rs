@@ -6,7 +6,8 @@ use crate::base::error::Error;
 use crate::orienting::orientation::{InputFile, Needed};
 use crate::photographs::raster::decoding_bytes;
 
-/// Bytes that one pixel of a view takes as long as there are views: colours (3) and grey values (4).
+/// Bytes that one pixel of a view takes as long as there are views: colours (3) and grey values
+/// (4).
 const VIEW_BYTES: u64 = 7;
 
 /// Bytes that the stages take at their peak for one pixel of a view, beside roofs: grey values in a
@@ -31,11 +32,6 @@ const MEMORY_MB: u32 = if cfg!(target_arch = "wasm32") {
 } else {
     32 << 10
 };
-
-/// The memory that may be taken, megabytes, where so much is stated.
-pub(crate) fn limit_mb(stated: Option<u32>) -> u64 {
-    u64::from(stated.unwrap_or(MEMORY_MB))
-}
 
 /// Peak memory of a run with these views, bytes: while they are decoded, when what is needed of
 /// their photographs is in memory, or in the stages; `roofs_m2` has the area of the roofs, square
@@ -63,9 +59,9 @@ pub(crate) fn peak_bytes(files: &[InputFile], views: &[PlannedView], roofs_m2: O
 pub(crate) fn check_memory(
     peak_bytes: u64,
     views: &[PlannedView],
-    stated_mb: Option<u32>,
+    limit_mb: Option<u32>,
 ) -> Option<Error> {
-    let limit = self::limit_mb(stated_mb) << 20;
+    let limit = u64::from(limit_mb.unwrap_or(MEMORY_MB)) << 20;
     let pixels: u64 = views.iter().map(PlannedView::pixels).sum();
     let mb = |bytes: u64| bytes >> 20;
     (peak_bytes > limit).then(|| Error::Scene {

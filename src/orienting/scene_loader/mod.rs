@@ -54,7 +54,6 @@ pub use inspect::{
     ShownArea, ViewWindow, inspect_files,
 };
 pub use load::{PlannedScene, load_scene, whole_views};
-pub(crate) use memory::limit_mb;
 #[cfg(target_arch = "wasm32")]
 pub(crate) use project::SHOWN;
 pub use project::{Project, open_project};

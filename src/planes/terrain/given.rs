@@ -18,7 +18,8 @@ use super::common_plane::{MIN_SAMPLES, ONE_HEIGHT, low_height};
 use super::{Ground, surface};
 use crate::base::geometry::Plane;
 use crate::base::math::{hypot, larger, median, smaller};
-use crate::orienting::known::{KnownComparison, KnownShift, MOST_DATUM_M, Terrain};
+use crate::orienting::known::{KnownComparison, KnownShift, Terrain};
+use crate::orienting::orientation::MOST_DATUM_M;
 
 /// Standard deviation of the ground as the images show it, metres, as in the comparison of the
 /// views on it: a few decimetres.

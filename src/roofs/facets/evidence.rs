@@ -211,8 +211,8 @@ fn ground_evidence(
     evidence.into_iter().map(|nats| larger(nats, 0.0)).collect()
 }
 
-/// Sums over the cells of the arrangement, but for the cost: `raster` says in which of `cells` each sample of `grid`
-/// lies.
+/// Sums over the cells of the arrangement, but for the cost: `raster` says in which of `cells`
+/// each sample of `grid` lies.
 fn sum_over_cells(
     hypothesis: &PlaneHypothesis,
     windows: &ShiftableWindows,

@@ -46,7 +46,8 @@ pub struct FlightOverview {
     pub ground: GroundSource,
     /// The height between them at which the footprints are drawn.
     pub ground_z: f64,
-    /// The factor by which photographs are reduced: as it is stated, or so that roofs do not suffer.
+    /// The factor by which photographs are reduced: as it is stated, or so that roofs do not
+    /// suffer.
     pub reduction: f64,
     /// Size of a pixel on the ground then, the middle one of all photographs.
     pub pixel_m: f64,
@@ -194,7 +195,9 @@ impl<'a> Flight<'a> {
         let region = RegionOfInterest::new(roi, &self.plan.origin, heights)?;
         region.cut(self.files, &mut views, self.most)?;
         let bytes = memory::peak_bytes(self.files, &views, roofs_m2);
-        let refusal = memory::check_memory(bytes, &views, self.memory_mb);
+        // What roofs take is never a reason to leave them out.
+        let of_photographs = memory::peak_bytes(self.files, &views, roofs_m2.map(|_| 0.0));
+        let refusal = memory::check_memory(of_photographs, &views, self.memory_mb);
         let window = |view: &PlannedView| ViewWindow::of(self.files, view);
         // A part of a megabyte counts as a whole one.
         Ok((

@@ -55,7 +55,9 @@ impl Plan {
                 Err(error) => self.errors.push(error),
             }
         }
-        self.peak_bytes = memory::peak_bytes(files, &views, None);
+        // On ground that is known there has been a first look, and a plan of what roofs take.
+        let roofs_m2 = options.ground_range.map(|_| 0.0);
+        self.peak_bytes = memory::peak_bytes(files, &views, roofs_m2);
         let too_large = memory::check_memory(self.peak_bytes, &views, options.memory_mb);
         self.is_implausible &= too_large.is_none();
         self.errors.extend(too_large);
