@@ -14,8 +14,8 @@ use crate::orienting::scene_loader::{Flight, LoadOptions, ViewWindow};
 /// Photographs are not reduced further for want of memory. Assumption: no roof is seen then.
 const MOST_REDUCTION: f64 = 16.0;
 
-/// By so much at a time photographs are reduced for want of memory.
-const REDUCED_BY: f64 = 1.1;
+/// Photographs are reduced by so much more at a time for want of memory.
+const REDUCTION_RATIO: f64 = 1.1;
 
 /// The tiles of an area with what their cells read, and when.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -109,7 +109,7 @@ impl WorkPlan {
     pub(super) fn fitting(&self) -> Option<f64> {
         let mut cells = self.tiles.iter().flat_map(|tile| &tile.cells);
         let is_any_too_large = cells.any(|cell| cell.left_out.is_some() && !cell.views.is_empty());
-        let fitting = (10.0 * REDUCED_BY * self.reduction).ceil() / 10.0;
+        let fitting = (10.0 * REDUCTION_RATIO * self.reduction).ceil() / 10.0;
         (is_any_too_large && self.reduction < MOST_REDUCTION).then_some(fitting)
     }
 }
