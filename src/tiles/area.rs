@@ -241,9 +241,8 @@ impl Area {
     }
 
     /// Works off the next tile in their order, and says which; `None` when all are done. A tile
-    /// that
-    /// the views do not show is left out; an error says which photograph cannot be had any more.
-    /// `progress` hears fractions of this tile's work.
+    /// that the views do not show is left out; an error says which photograph cannot be had any
+    /// more. `progress` hears fractions of this tile's work.
     pub fn step(
         &mut self,
         source: &mut dyn FileSource,
@@ -265,8 +264,8 @@ impl Area {
     }
 
     /// One model of all tiles, as files, whatever the order in which they were done; the first
-    /// error
-    /// where no tile could be read. `seconds` of each tile go into `report.json` and may be empty.
+    /// error where no tile could be read. `seconds` of each tile go into `report.json` and may be
+    /// empty.
     pub fn finish(mut self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
         let joined = self.join()?;
         let reports: Vec<TileReport> = self.reports.into_values().collect();

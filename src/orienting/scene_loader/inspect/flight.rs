@@ -352,6 +352,27 @@ mod tests {
     }
 
     #[test]
+    fn large_roofs_are_stated_and_photographs_alone_are_refused() {
+        let (files, z) = house();
+        let planned = |memory_mb: u32, roofs_m2: f64| {
+            let limited = LoadOptions {
+                memory_mb: Some(memory_mb),
+                ..options(None, Some(z))
+            };
+            let flight = Flight::new(&files, &limited, None).unwrap();
+            let roi = flight.overview().shown;
+            let (_, stated_mb, refusal) = flight
+                .windows(&options(roi, Some(z)), Some(roofs_m2))
+                .unwrap();
+            (stated_mb, refusal.is_some())
+        };
+        let (small, large) = (planned(100, 100.0), planned(100, 7000.0));
+        assert!(small.0 < 50 && large.0 > 1000, "{small:?} {large:?}");
+        assert!(!small.1 && !large.1);
+        assert!(planned(20, 0.0).1);
+    }
+
+    #[test]
     fn the_first_bytes_of_photographs_suffice_for_a_plan() {
         let (files, z) = house();
         let mut heads = files.clone();
