@@ -2,8 +2,9 @@
 //!
 //! Datums of heights differ by decimetres to tens of metres (ellipsoid and geoid, old and new
 //! levels), so the model may be wrong by one height as a whole. What the images match is compared
-//! with it: the lowest difference that many positions share is that height. It is taken out where
-//! it exceeds what both accuracies explain.
+//! with it: the lowest difference that many positions share is that height, told where the model is
+//! of one piece, not in a house that is left in it. It is taken out where it exceeds what both
+//! accuracies explain.
 //!
 //! Then it is asked place by place. Where it differs around roofs by more than the accuracies
 //! explain, one of the two grounds steps at the rim of the patch in which they differ and the other
@@ -58,7 +59,7 @@ impl Ground {
         samples: &[Point3<f64>],
         ends: &[Point3<f64>],
     ) -> Self {
-        let offset = offset_of(terrain, samples);
+        let offset = self.offset_of(terrain, samples);
         let certain = explained_m(terrain);
         let shift = offset.map(|up| KnownShift {
             by: Vector3::z() * up,
@@ -88,6 +89,56 @@ impl Ground {
         }
         self.terrain = Some(comparison);
         self
+    }
+
+    /// How far the ground that the images show lies above the model, metres.
+    fn offset_of(&self, terrain: &Terrain, samples: &[Point3<f64>]) -> Option<f64> {
+        let is_in_piece = self.largest_piece(terrain);
+        let above = |s: &Point3<f64>| Some(s.z - terrain.z_at(s.x, s.y)?);
+        let told = samples.iter().filter(|s| is_in_piece(s));
+        let above: Vec<f64> = told.filter_map(above).collect();
+        let low = low_height(above.iter().copied())?;
+        // Positions on the ground lie around it.
+        let mut near: Vec<f64> = (above.into_iter())
+            .filter(|rise| (rise - low).abs() < 0.5 * ONE_HEIGHT)
+            .collect();
+        median(&mut near)
+    }
+
+    /// Does a model have most of this ground's extent in one piece with a place, without a wall
+    /// between?
+    fn largest_piece(&self, terrain: &Terrain) -> impl Fn(&Point3<f64>) -> bool {
+        let [width, height] = [self.columns, self.rows].map(|n| n as f64 * self.block_m);
+        let extent = [
+            self.min.x,
+            self.min.y,
+            self.min.x + width,
+            self.min.y + height,
+        ];
+        let known = |p: &Point2<f64>| terrain.z_at(p.x, p.y);
+        let model = Self::laid(extent, BLOCK_M, known, Some(self));
+        let largest = model.as_ref().map(|model| {
+            let rises = &model.rises;
+            let goes_on = |k: usize, l: usize| (rises[k] - rises[l]).abs() < WALL_M;
+            let pieces = patches(&model.beside(), |_| true, goes_on);
+            let largest = pieces.into_iter().max_by_key(Vec::len).unwrap_or_default();
+            let mut is_in = vec![false; rises.len()];
+            largest.into_iter().for_each(|k| is_in[k] = true);
+            is_in
+        });
+        move |p| {
+            (model.as_ref().zip(largest.as_ref())).is_none_or(|(m, is_in)| is_in[m.block_of(p)])
+        }
+    }
+
+    /// The neighbours of each block.
+    fn beside(&self) -> Vec<Vec<usize>> {
+        let mut beside = vec![Vec::new(); self.rises.len()];
+        for [k, l] in surface::neighbours(self.columns, self.rises.len()) {
+            beside[k].push(l);
+            beside[l].push(k);
+        }
+        beside
     }
 
     /// From the terrain model to this ground at places of a building, metres up, where the images
@@ -143,11 +194,7 @@ impl Ground {
             let mut rises = steps.filter_map(|i| Some(on_way(i)? - on_way(i - 1)?));
             rises.any(|rise| rise.abs() > WALL_M)
         };
-        let mut beside = vec![Vec::new(); count];
-        for [k, l] in surface::neighbours(self.columns, count) {
-            beside[k].push(l);
-            beside[l].push(k);
-        }
+        let beside = self.beside();
         let mut found = Vec::new();
         for patch in patches(&beside, |k| up[k].abs() > certain, is_one_patch) {
             // At the rim: its sides, those where the model has a wall, and how much more the model
@@ -315,22 +362,10 @@ fn is_contradicted(comparison: &KnownComparison, at: &Point2<f64>) -> bool {
     comparison.contradicted_at.iter().any(is_near)
 }
 
-/// How far the ground that the images show lies above the model, metres.
-fn offset_of(terrain: &Terrain, samples: &[Point3<f64>]) -> Option<f64> {
-    let above = |s: &Point3<f64>| Some(s.z - terrain.z_at(s.x, s.y)?);
-    let above: Vec<f64> = samples.iter().filter_map(above).collect();
-    let low = low_height(above.iter().copied())?;
-    // Positions on the ground lie around it.
-    let mut near: Vec<f64> = (above.into_iter())
-        .filter(|rise| (rise - low).abs() < 0.5 * ONE_HEIGHT)
-        .collect();
-    median(&mut near)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::orienting::known::WorldSystem;
+    use crate::orienting::known::{KnownVerdict, WorldSystem};
     use crate::orienting::orientation::InputFile;
 
     /// Heights on 100 m by 100 m as an ASCII grid.
@@ -386,6 +421,31 @@ mod tests {
             let places = places.map(|(i, j)| Point2::new(x + 5.0 * i, y + 6.0 * j));
             found.above_terrain(terrain, places.into_iter())
         })
+    }
+
+    #[test]
+    fn a_house_that_is_left_in_a_terrain_is_no_other_datum() {
+        // Of the ground the images show little besides what lies around the house.
+        let near = |p: &Point3<f64>| in_house(HOUSES[0], p.x, p.y, 6.0);
+        let matched: Vec<Point3<f64>> = samples(surface).into_iter().filter(near).collect();
+        let mut ends = matched.clone();
+        ends.sort_by(|a, b| a.z.total_cmp(&b.z));
+        let images = Ground::from_samples(&matched, 50.0);
+        for datum in [0.0, 4.0] {
+            let terrain = terrain(|x, y| {
+                let is_left_in = in_house(HOUSES[0], x, y, 2.0);
+                ground(x, y) - datum + if is_left_in { 7.0 } else { 0.0 }
+            });
+            let found = images.clone().with_terrain(&terrain, &matched, &ends);
+            let comparison = found.terrain().unwrap();
+            let [.., up] = comparison.shift_m.unwrap();
+            assert!((up - datum).abs() < 0.1, "{up} m instead of {datum}");
+            // It has the only roof of the place.
+            assert_eq!(comparison.verdict, KnownVerdict::Contradicted);
+            let [x, y] = HOUSES[0];
+            let miss = found.z_at(&Point2::new(x, y)) - ground(x, y);
+            assert!(miss.abs() < 0.3, "{miss} m below the house");
+        }
     }
 
     #[test]
