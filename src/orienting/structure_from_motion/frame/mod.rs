@@ -31,6 +31,7 @@ mod words;
 use nalgebra::{Rotation3, Vector3};
 
 pub(super) use self::checks::{ByControl, Doubt, Placement, doubts, tilt_sigma};
+pub(super) use self::places::RECEIVER_SIGMA_M;
 use self::positions::by_true_positions;
 pub(super) use self::stated::{StatedPose, spread};
 use self::stated::{centers, points};

@@ -11,7 +11,7 @@ use crate::orienting::structure_from_motion::random::Random;
 use crate::orienting::structure_from_motion::similarity::Similarity;
 
 /// Standard deviation of a position where none is stated, metres: a consumer receiver.
-pub(super) const RECEIVER_SIGMA_M: f64 = 2.0;
+pub(in super::super) const RECEIVER_SIGMA_M: f64 = 2.0;
 
 /// Samples of three positions.
 const SAMPLES: usize = 300;

@@ -8,10 +8,13 @@ use crate::base::error::listed as names;
 use crate::base::geometry::mean_point;
 use crate::base::math::median;
 use crate::orienting::orientation::{Anchor, geocentric_of};
-use crate::orienting::structure_from_motion::frame::{StatedPose, rotation_of_angles};
+use crate::orienting::structure_from_motion::frame::{
+    RECEIVER_SIGMA_M, StatedPose, rotation_of_angles,
+};
 use crate::orienting::structure_from_motion::ground_control::{GeoList, GeoPlace};
 use crate::orienting::structure_from_motion::intrinsics::Intrinsics;
 use crate::orienting::structure_from_motion::metadata::PhotoMetadata;
+use crate::orienting::structure_from_motion::triangulation::LARGEST_RESIDUAL_SIGMAS;
 
 /// The cameras that took the photographs.
 #[derive(Clone, Debug, Default)]
@@ -89,6 +92,7 @@ pub(super) fn stated_of(photos: &[Photo], list: Option<&GeoList>) -> Stated {
             names(unknown)
         ));
     }
+    notes.extend(beside_headers(photos, &headers));
     notes.extend(doubtful_positions(&headers, &paths));
     // A receiver measures no height of exactly 0; what fills an empty field does.
     let height = |m: &PhotoMetadata| m.height_m.filter(|h| *h != 0.0);
@@ -133,6 +137,28 @@ fn with_place(header: &PhotoMetadata, place: Option<&GeoPlace>) -> PhotoMetadata
     }
 }
 
+/// A list that lies further from the positions in the headers than receivers err: it counts, but
+/// a wrong zone or another flight's list would, too.
+fn beside_headers(photos: &[Photo], listed: &[PhotoMetadata]) -> Option<String> {
+    let on_ellipsoid = |m: &PhotoMetadata| {
+        let [lon, lat] = m.position.filter(|_| !m.lacks_hemispheres)?;
+        Some(geocentric_of(lon, lat, 0.0))
+    };
+    let both = photos.iter().zip(listed);
+    let both = both.filter(|(photo, listed)| photo.metadata.position != listed.position);
+    let apart = both.filter_map(|(photo, listed)| {
+        Some((on_ellipsoid(&photo.metadata)? - on_ellipsoid(listed)?).norm())
+    });
+    let metres = median(&mut apart.collect::<Vec<f64>>())?;
+    (metres > LARGEST_RESIDUAL_SIGMAS * RECEIVER_SIGMA_M).then(|| {
+        format!(
+            "the places in {} lie {metres:.0} m from the positions in the headers of the same \
+             photographs: {0} counts; take it away where it is of another system or flight",
+            GeoList::FILE
+        )
+    })
+}
+
 /// Positions that lack a part.
 fn doubtful_positions(headers: &[PhotoMetadata], paths: &[&str]) -> Vec<String> {
     let with = |is_so: fn(&PhotoMetadata) -> bool| -> Vec<&str> {
@@ -168,4 +194,31 @@ fn doubtful_positions(headers: &[PhotoMetadata], paths: &[&str]) -> Vec<String> 
         }
     }
     notes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::orienting::structure_from_motion::features::Features;
+
+    #[test]
+    fn a_list_of_places_far_from_those_in_the_headers_is_named() {
+        let at = |lon: f64, lat: f64| Photo {
+            path: "a.jpg".to_owned(),
+            size: [100, 80],
+            metadata: PhotoMetadata {
+                position: Some([lon, lat]),
+                height_m: Some(120.0),
+                ..PhotoMetadata::default()
+            },
+            features: Features::default(),
+            colours: Vec::new(),
+        };
+        let list = GeoList::read("geo.txt", "EPSG:4326\na.jpg 19.2 50.1 120\n").unwrap();
+        let notes = |lon, lat| stated_of(&[at(lon, lat)], Some(&list)).notes;
+        // One 700th of a degree of latitude is 159 m.
+        let far = notes(19.2, 50.1 + 1.0 / 700.0);
+        assert!(far.len() == 1 && far[0].contains("159 m"), "{far:?}");
+        assert_eq!(notes(19.20003, 50.1), Vec::<String>::new());
+    }
 }
