@@ -53,7 +53,9 @@ demo: $(SITE)
 build: $(SITE)
 	@echo "The site is in www/dist."
 
-test: setup $(WASM_PACK) $(STAMPS)/chromium
+# Two at a time, because compilers end on one core.
+test:
+	$(MAKE) -j 2 setup $(WASM_PACK) $(STAMPS)/chromium
 	tests/all.sh
 
 lint: $(WASM32) $(NPM) $(PACKAGE) $(ORIENTATION)
@@ -116,16 +118,19 @@ $(CHOSEN):
 	rm -f $(STAMPS)/profile-*
 	touch $@
 
-$(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(NPM) $(CHOSEN)
-	cargo build --lib --profile $(PROFILE) --target wasm32-unknown-unknown
-	wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@D) ridgeline
+WASM = cargo build --lib --profile $(PROFILE) --target wasm32-unknown-unknown
+BOUND = wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@D)
 
-# After the other one, because cargo puts both in the same place. In few pieces the unused half of the crate is left out
-# more thoroughly: a visitor waits for this module.
+# In few pieces the unused half of the crate is left out more thoroughly: a visitor waits for this module.
 SMALL := --config 'profile.page.package.ridgeline.codegen-units=2'
-$(ORIENTATION): $(PACKAGE)
-	cargo build --lib --no-default-features --profile $(PROFILE) --target wasm32-unknown-unknown $(SMALL)
-	wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@D) orientation
+$(ORIENTATION): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(NPM) $(CHOSEN)
+	$(WASM) --no-default-features $(SMALL)
+	$(BOUND) orientation
+
+# Cargo puts both in the same place: the later one stays, and the tests in wasm are of that.
+$(PACKAGE): $(ORIENTATION)
+	$(WASM)
+	$(BOUND) ridgeline
 
 # What the page shows before anything is computed in the browser: the demo scene's model, made by the page's own core.
 $(ENTRANCE): $(PACKAGE) www/scripts/entrance.mjs tests/wasm/session.mjs $(shell find www/public/demo -type f)

@@ -60,12 +60,14 @@ www() { (cd www && npm run --silent "$@"); }
 
 formatted() { cargo fmt --all --check && cargo fmt --all --check --manifest-path www/tools/Cargo.toml; }
 
-# With the page's profile, which has its derives compiled already; both modules of the page.
+# With the page's profile, which has its derives compiled already; both modules of the page and the tests in wasm, whose lines
+# the native run does not see.
 clippy_wasm32() {
-    local of_page=(--quiet --profile page --target wasm32-unknown-unknown)
-    cargo clippy --lib --bins --tests "${of_page[@]}" -- -D warnings
-    local first=$?
-    cargo clippy --lib --no-default-features "${of_page[@]}" -- -D warnings && return $first
+    local status=0
+    for part in --lib "--lib --no-default-features" "--tests --package ridgeline-wasm"; do
+        cargo clippy $part --quiet --profile page --target wasm32-unknown-unknown -- -D warnings || status=1
+    done
+    return $status
 }
 
 # Names dependencies that nothing uses: crates by their paths, packages by where they are imported or configured.
@@ -99,7 +101,7 @@ step typecheck check www typecheck
 step biome check www lint
 step clippy-wasm32 check finished clippy-wasm32
 if [ "${1:-all}" = all ]; then
-    # Compiled into a place of its own, while tests that end late leave a core free.
+    # While tests that end late leave a core free.
     start wasm wasm-pack test --node --mode no-install tests/wasm --profile page
     step native cargo cargo test --quiet --no-fail-fast
     # One core is enough for it.
