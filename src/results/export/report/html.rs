@@ -22,19 +22,11 @@ impl Html {
         (self.text.write_fmt(content)).expect("a String takes all that is written");
     }
 
-    /// Begins a table. Columns whose names begin with < stand on the left; names that end with m, m²
-    /// or m³ have feet too.
+    /// Begins a table. Columns whose names begin with < stand on the left.
     pub(super) fn head<T: AsRef<str>>(&mut self, names: &[T]) {
         let names = names.iter().map(AsRef::as_ref);
         self.left = names.clone().map(|name| name.starts_with('<')).collect();
-        let names = names.map(|name| {
-            let name = escaped(name.trim_start_matches('<'));
-            match name.rsplit_once(", m") {
-                Some((words, "")) => both(&name, &format!("{words}, ft")),
-                Some((words, power @ ("²" | "³"))) => both(&name, &format!("{words}, ft{power}")),
-                _ => name,
-            }
-        });
+        let names = names.map(|name| with_feet(name.trim_start_matches('<')));
         let names: Vec<String> = names.collect();
         self.push(format_args!("<table>\n<thead>"));
         self.cells("th", &names);
@@ -59,6 +51,15 @@ impl Html {
 
     pub(super) fn end_table(&mut self) {
         self.push(format_args!("</tbody>\n</table>\n"));
+    }
+}
+
+/// A name as HTML; one that ends with m, m² or m³ with feet, too.
+pub(super) fn with_feet(name: &str) -> String {
+    let name = escaped(name);
+    match name.rsplit_once(", m") {
+        Some((words, power @ ("" | "²" | "³"))) => both(&name, &format!("{words}, ft{power}")),
+        _ => name,
     }
 }
 

@@ -1,7 +1,7 @@
 //! What roofers and planners of solar panels ask for: lengths by class, the covering with waste, what
 //! setbacks leave of each face.
 
-use super::html::{Html, in_feet, measure};
+use super::html::{Html, in_feet, measure, with_feet};
 use super::reported::ReportedModel;
 use super::svg::escaped;
 use crate::results::roof_report::{BuildingReport, Estimate, RoofEdgeKind, WasteTable};
@@ -59,7 +59,7 @@ fn waste(html: &mut Html, report: &BuildingReport) {
         html.row(&fields);
     };
     let area = |value| measure(Estimate { value, sigma: None }, 2, 1);
-    row("Area, m² or ft²", &area);
+    row(&with_feet("Area, m²"), &area);
     row("Squares of 100 ft²", &|m2| {
         format!("{:.1}", in_feet(m2, 2) / 100.0)
     });
@@ -89,6 +89,7 @@ fn usable(html: &mut Html, reported: &ReportedModel, report: &BuildingReport) {
     }
     let mut fields = vec!["all".to_owned()];
     fields.extend(report.usable_m2.iter().map(|area| measure(*area, 2, 2)));
+    fields.push(String::new());
     html.row(&fields);
     html.end_table();
 }
