@@ -28,7 +28,7 @@ pub(super) enum Command {
     Tile(TileArgs),
     /// Join the parts of all tiles of a plan into one model.
     Join(JoinArgs),
-    /// Make the roof report of a model again: a page that prints, tables and JSON, from its CityJSON.
+    /// Make the roof report of a model again, from its CityJSON: a page that prints, tables, JSON.
     Report(ReportArgs),
     /// Print all parameters with their defaults, as JSON for --params.
     Params,

@@ -259,8 +259,8 @@ impl Session {
         })
     }
 
-    /// Makes the files of the report anew with setbacks of one's own, the text of a rule file, beside
-    /// the built-in ones.
+    /// Makes the files of the report anew with setbacks of one's own, the text of a rule file,
+    /// beside the built-in ones.
     #[wasm_bindgen(js_name = reportWith)]
     pub fn report_with(&mut self, setbacks: &str) -> Result<(), JsValue> {
         let refused = |problem: String| named_error("InputError", &format!("the file {problem}"));

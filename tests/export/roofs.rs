@@ -72,7 +72,7 @@ fn faces_have_their_planted_numbers() {
             "{value} for {wanted}"
         );
     };
-    near(&south["pitchDegrees"], 0.5f64.atan().to_degrees());
+    near(&south["pitchDegrees"], 26.565);
     near(&south["azimuthDegrees"], 180.0);
     near(&south["planeHeightAtCenterMeters"], 6.0 + ORIGIN.z);
     near(&south["centerMeters"][0], ORIGIN.x + 5.0);
@@ -101,8 +101,8 @@ fn faces_have_their_planted_numbers() {
 fn a_placed_face_leads_to_its_yield() {
     let (_, model, _) = known_models().remove(1);
     let [utm, local] = placed();
-    // Grid north is turned by the meridian convergence, 0.70 degrees here.
-    let convergence = (8.074 - 9.0) * 48.86f64.to_radians().sin();
+    // Meridian convergence: 0.926 degrees west of the central meridian, times the sine of 48.86.
+    let convergence = -0.926 * 0.7531;
     for (scene, turn, [lat, lon]) in [
         (utm, convergence, [48.86, 8.07]),
         (local, 0.0, [-33.25, 11.5]),

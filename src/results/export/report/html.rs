@@ -1,5 +1,5 @@
-//! Text and tables of the page. Lengths, areas and volumes are there in metres and in feet; a switch
-//! of the page shows one of them.
+//! Text and tables of the page. Lengths, areas and volumes are there in metres and in feet; a
+//! switch of the page shows one of them.
 
 use std::fmt::{Display, Write};
 

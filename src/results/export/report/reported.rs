@@ -61,8 +61,8 @@ impl ReportedModel {
         json!({ "latitude": rounded(lat, 7), "longitude": rounded(lon, 7) })
     }
 
-    /// Where a facet falls to, degrees clockwise from true north, from grid north where the place on
-    /// the Earth is not known; `None` for a level one.
+    /// Where a facet falls to, degrees clockwise from true north, from grid north where the place
+    /// on the Earth is not known; `None` for a level one.
     pub(super) fn azimuth_deg(&self, report: &FacetReport) -> Option<Estimate> {
         let convergence = self.grid_north_deg(&self.center(report));
         report.azimuth_deg.map(|azimuth| Estimate {

@@ -1,8 +1,8 @@
 //! The roofs as one JSON file for programs: faces with the fields of Google's Solar API
 //! (`roofSegmentStats`), and edges, polygons, standard deviations, what setbacks leave.
 //!
-//! Positions are `[x, y, z]` in the world frame of the input, metres; `center` and `boundingBox` are
-//! latitude and longitude, `null` where the place on the Earth is not known. The schema is
+//! Positions are `[x, y, z]` in the world frame of the input, metres; `center` and `boundingBox`
+//! are latitude and longitude, `null` where the place on the Earth is not known. The schema is
 //! `docs/roofs.schema.json`.
 
 use nalgebra::{Point2, Point3, Vector3};

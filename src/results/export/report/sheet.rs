@@ -1,5 +1,5 @@
-//! What roofers and planners of solar panels ask for: lengths by class, the covering with waste, what
-//! setbacks leave of each face.
+//! What roofers and planners of solar panels ask for: lengths by class, the covering with waste,
+//! what setbacks leave of each face.
 
 use super::html::{Html, in_feet, measure, with_feet};
 use super::reported::ReportedModel;
