@@ -26,6 +26,7 @@ use ridgeline::orienting::scene_loader::{
 use ridgeline::orienting::structure_from_motion::{GeoList, GroundControl, PhotoMetadata};
 use ridgeline::photographs::raster::{image_header, load_image, load_window};
 use ridgeline::results::export::report_files;
+use ridgeline::results::roof_report::SetbackRule;
 
 /// Longest time that one input may take: machines may be busy, but nothing hangs.
 const SLOWEST: Duration = Duration::from_secs(60);
@@ -392,7 +393,7 @@ fn read_known(files: &[InputFile]) {
     };
     let origin = nalgebra::Vector3::new(432_100.0, 5_412_300.0, 0.0);
     for file in files {
-        let _ = report_files(&file.bytes);
+        let _ = report_files(&file.bytes, &SetbackRule::built_in());
         let terrain = Terrain::read(file, None, &system, origin, 0.3);
         if let Ok(terrain) = &terrain {
             let z = terrain.z_at(3.0, -2.0);

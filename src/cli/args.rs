@@ -28,7 +28,7 @@ pub(super) enum Command {
     Tile(TileArgs),
     /// Join the parts of all tiles of a plan into one model.
     Join(JoinArgs),
-    /// Make the roof report of a model again: a page that prints and tables, from its CityJSON.
+    /// Make the roof report of a model again, from its CityJSON: a page that prints, tables, JSON.
     Report(ReportArgs),
     /// Print all parameters with their defaults, as JSON for --params.
     Params,
@@ -127,6 +127,9 @@ pub(super) struct ReportArgs {
     /// Folder for the report instead; made if missing.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Setbacks of one's own beside the built-in ones: a rule file, as docs/report.md describes it.
+    #[arg(long, value_name = "FILE")]
+    pub setbacks: Option<PathBuf>,
 }
 
 /// The arguments of `check`.

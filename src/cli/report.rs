@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use ridgeline::results::export::report_files;
+use ridgeline::results::roof_report::SetbackRule;
 
 use super::args::ReportArgs;
 use super::failure::Failure;
@@ -22,7 +23,17 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
         let advice = "give the folder of a reconstruction, or a CityJSON file";
         Failure::Input(format!("{}: cannot be read: {e}; {advice}", path.display()))
     })?;
-    let written = report_files(&bytes)
+    let setbacks = match &args.setbacks {
+        Some(path) => {
+            let failure =
+                |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
+            let text = fs::read_to_string(path);
+            let text = text.map_err(|e| failure(format!("cannot be read: {e}")))?;
+            SetbackRule::with(&text).map_err(failure)?
+        }
+        None => SetbackRule::built_in(),
+    };
+    let written = report_files(&bytes, &setbacks)
         .map_err(|problem| Failure::Input(format!("{}: {problem}", path.display())))?;
     let beside = path.parent().unwrap_or(Path::new("."));
     let out = args.out.as_deref().unwrap_or(beside);

@@ -14,6 +14,8 @@ use crate::planes::adjacency::{AdjacencyTrace, CornerPlane};
 use crate::planes::coplanar::{CoplanarSet, CoplanarTrace};
 use crate::planes::dense::{DensePlane, DenseTrace};
 use crate::planes::objectspace::{Window, WindowTrace};
+use crate::results::export::report_files;
+use crate::results::roof_report::SetbackRule;
 use crate::results::texture::texture_ground;
 
 /// What `directions` returns.
@@ -255,6 +257,20 @@ impl Session {
             let message = format!("there is no '{name}': run all stages first");
             named_error("RangeError", &message)
         })
+    }
+
+    /// Makes the files of the report anew with setbacks of one's own, the text of a rule file,
+    /// beside the built-in ones.
+    #[wasm_bindgen(js_name = reportWith)]
+    pub fn report_with(&mut self, setbacks: &str) -> Result<(), JsValue> {
+        let refused = |problem: String| named_error("InputError", &format!("the file {problem}"));
+        let rules = SetbackRule::with(setbacks).map_err(refused)?;
+        let city = self.export_file("model.city.json")?;
+        let written = report_files(&city, &rules).map_err(refused)?;
+        let outputs = self.outputs.as_mut().expect("they were just asked for");
+        outputs.retain(|(name, _)| written.iter().all(|(new, _)| new != name));
+        outputs.extend(written);
+        Ok(())
     }
 }
 

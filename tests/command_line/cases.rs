@@ -208,7 +208,7 @@ fn scenes_have_their_right_values() {
 fn a_report_of_a_model_in_feet_is_in_metres() {
     let Some(cases) = cases() else { return };
     let model = files(&case(&cases, "48/model_feet.city.json")).remove(0).1;
-    let written = report_files(&model).unwrap();
+    let written = report_files(&model, &[]).unwrap();
     let table = &written
         .iter()
         .find(|(name, _)| name == "buildings.csv")

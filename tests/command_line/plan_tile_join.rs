@@ -279,7 +279,7 @@ fn every_line_of_the_sequence_is_a_valid_feature() {
     is_sound(&validator, first);
     let model = &reference().model;
     let [of_lines, of_whole] = ["model.city.jsonl", "model.city.json"]
-        .map(|name| ridgeline::results::export::report_files(&model[name]).unwrap());
+        .map(|name| ridgeline::results::export::report_files(&model[name], &[]).unwrap());
     assert!(of_lines == of_whole, "the reports differ");
     let whole: Value = serde_json::from_slice(&reference().model["model.city.json"]).unwrap();
     let head: Value = serde_json::from_str(first).unwrap();

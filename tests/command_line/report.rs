@@ -39,7 +39,8 @@ fn a_report_is_made_again_and_of_what_is_no_model_it_is_not() {
             "buildings.csv",
             "edges.csv",
             "facets.csv",
-            "roof_report.html"
+            "roof_report.html",
+            "roofs.json"
         ]
     );
     for (path, reason) in [

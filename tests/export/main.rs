@@ -9,6 +9,7 @@ mod glb;
 mod meshes;
 mod planted;
 mod report;
+mod roofs;
 #[path = "../common/solid_checks.rs"]
 mod solid_checks;
 mod tables;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 use ridgeline::results::export::report_files;
+use ridgeline::results::roof_report::SetbackRule;
 use ridgeline::roofs::model::{
     CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
 };
@@ -12,7 +13,7 @@ use serde_json::Value;
 use crate::planted::{ORIGIN, files_of, planted_models, scene};
 
 /// The models, with planted standard deviations.
-fn known_models() -> Vec<(&'static str, RoofModel, f64)> {
+pub fn known_models() -> Vec<(&'static str, RoofModel, f64)> {
     let mut models = planted_models();
     for facet in models
         .iter_mut()
@@ -64,8 +65,8 @@ fn number(row: &BTreeMap<String, String>, name: &str) -> f64 {
 fn a_folder_makes_the_same_report_again() {
     for (name, model, _) in known_models() {
         let files = files_of(&scene(), &model);
-        let again = report_files(&files["model.city.json"]).unwrap();
-        assert_eq!(again.len(), 4);
+        let again = report_files(&files["model.city.json"], &SetbackRule::built_in()).unwrap();
+        assert_eq!(again.len(), 5);
         for (file, bytes) in again {
             assert!(files[&file] == bytes, "{name}: {file}");
         }
@@ -226,7 +227,7 @@ fn a_file_that_is_no_model_is_refused_with_the_reason() {
     let damaged = |damage: &dyn Fn(&mut Value)| {
         let mut file = good.clone();
         damage(&mut file);
-        report_files(&serde_json::to_vec(&file).unwrap())
+        report_files(&serde_json::to_vec(&file).unwrap(), &[])
     };
     assert!(damaged(&|_| {}).is_ok());
     for (damage, reason) in [
@@ -268,7 +269,7 @@ fn a_file_that_is_no_model_is_refused_with_the_reason() {
         let found = damaged(damage).unwrap_err();
         assert!(found.contains(reason), "{found} instead of {reason}");
     }
-    assert!(report_files(b"{").unwrap_err().contains("no JSON"));
+    assert!(report_files(b"{", &[]).unwrap_err().contains("no JSON"));
     // What others leave out is not needed.
     let bare = damaged(&|f| {
         f["CityObjects"]["building-0"]["attributes"] = Value::Null;

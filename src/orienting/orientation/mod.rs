@@ -67,7 +67,7 @@ pub use detect::{FileKind, detect};
 pub(crate) use detect::{GCP_LIST, GEO_LIST, POINT_CLOUD, is_ascii_grid};
 pub(crate) use epsg::{TransverseMercator, is_geographic, plane_of};
 pub use format::Format;
-pub(crate) use geodesy::{A_M, geocentric_of};
+pub(crate) use geodesy::{A_M, geocentric_of, geographic_of};
 pub use geodesy::{Anchor, MOST_DATUM_M};
 pub use image_orientation::{Crop, Orientation};
 pub use input_file::InputFile;

@@ -4,7 +4,10 @@ use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 
 use crate::base::agreement::AgreementReport;
-use crate::orienting::orientation::{Anchor, TransverseMercator, geocentric_of};
+use crate::orienting::orientation::{Anchor, TransverseMercator, geocentric_of, geographic_of};
+
+/// How the description of a local frame begins.
+const EAST_NORTH_UP: &str = "east, north, up from longitude";
 
 /// Reference system and quality of the orientation, as far as files and images show it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,6 +40,29 @@ impl Survey {
         Some(geocentric_of(lon, lat, world.z))
     }
 
+    /// Longitude and latitude in degrees and height in metres of a point of the world; `None` where
+    /// its place on the Earth is not known.
+    pub fn geographic(&self, world: &Point3<f64>) -> Option<[f64; 3]> {
+        self.geocentric(world).map(|place| geographic_of(&place))
+    }
+
+    /// The anchor of a system that [`Self::describe`] put into words.
+    pub fn anchor_described(words: &str) -> Option<Anchor> {
+        let numbers = words.strip_prefix(EAST_NORTH_UP)?.split([' ', ',']);
+        let numbers: Vec<f64> = numbers
+            .filter_map(|word| word.parse().ok())
+            .filter(|number: &f64| number.is_finite())
+            .collect();
+        let &[lon_deg, lat_deg, height_m] = &numbers[..] else {
+            return None;
+        };
+        Some(Anchor {
+            lon_deg,
+            lat_deg,
+            height_m,
+        })
+    }
+
     /// The coordinate system of the results in words; `None` where the files do not state it.
     pub fn describe(&self) -> Option<String> {
         let of_anchor = |a: &Anchor| {
@@ -46,7 +72,7 @@ impl Survey {
                 height_m,
             } = a;
             format!(
-                "east, north, up from longitude {lon_deg}, latitude {lat_deg}, ellipsoidal height {height_m} m (WGS84)"
+                "{EAST_NORTH_UP} {lon_deg}, latitude {lat_deg}, ellipsoidal height {height_m} m (WGS84)"
             )
         };
         let of_epsg = self.epsg.map(|epsg| format!("EPSG:{epsg}"));

@@ -19,7 +19,7 @@ impl Measured {
             names.collect()
         };
         Self {
-            buildings: roof_report(model),
+            buildings: roof_report(model, &[]),
             photographs: (views_of_facets(scene, model).into_iter())
                 .map(names)
                 .collect(),

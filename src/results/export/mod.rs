@@ -14,6 +14,7 @@
 //! | `facets.geojson`, `edges.geojson` | the roofs in plan, with areas, slopes, lengths |
 //! | `roof_report.html` | the roofs in numbers and pictures, a page that prints |
 //! | `buildings.csv`, `facets.csv`, `edges.csv` | the same numbers as tables |
+//! | `roofs.json` | the same for programs, with polygons |
 //! | `lines.csv` | the 3D lines as a table |
 //! | `lines.json`, `segments.json`, `halfplanes.json` | what the model was made from |
 //! | `evidence.json` | what spoke for every candidate, and against it |
@@ -55,6 +56,7 @@ use crate::lines::lines2d::ImageSegment;
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
 use crate::planes::half_planes::HalfPlane;
+use crate::results::roof_report::SetbackRule;
 use crate::results::texture::TexturedModel;
 use crate::roofs::model::{BuildingWalls, RoofModel};
 
@@ -94,7 +96,8 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
     let atlas = atlas_jpeg(textured, params.jpeg_quality);
     let measured = Measured::new(scene, model);
     let city = cityjson::city_json(scene, (model, walls), &measured, textured);
-    let report = report_files(&city).expect("what was just written reads");
+    let report =
+        report_files(&city, &SetbackRule::built_in()).expect("what was just written reads");
     let mut files: Vec<(String, Vec<u8>)> = [
         ("model.city.json", city),
         ("model.glb", glb(scene, model, textured, &atlas)),

@@ -14,6 +14,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector2};
+use serde::Deserialize;
 
 use crate::base::geometry::{Segment3, sides};
 use crate::base::ids::FacetId;
@@ -36,10 +37,11 @@ pub(super) const TURN_SINE: f64 = 0.0175;
 
 /// Shorter pieces between longer ones have no direction of their own, metres: what is left where
 /// outlines were welded.
-const SHORT_PIECE_M: f64 = 0.01;
+pub(super) const SHORT_PIECE_M: f64 = 0.01;
 
 /// What an edge of a roof is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
+#[serde(rename_all = "snake_case")]
 pub enum RoofEdgeKind {
     /// The level top of two facets that fall away from it.
     Ridge,

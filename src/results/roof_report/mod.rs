@@ -6,6 +6,9 @@
 //! estimate        a number and its standard deviation
 //! straight_sides  corners in plan, and the straight sides between them
 //! shape           a building as a function of uncertain numbers, whose errors are propagated
+//! setbacks        rules of what is kept clear along edges
+//! usable          what a rule leaves of a facet
+//! waste           what is added for cut-offs
 //! photographs     which views show a facet
 //! ```
 //!
@@ -15,16 +18,23 @@
 mod edges;
 mod estimate;
 mod photographs;
+mod setbacks;
 mod shape;
 mod straight_sides;
+mod usable;
+mod waste;
 
 pub use edges::{RoofEdge, RoofEdgeKind, roof_edges};
 pub use estimate::Estimate;
 pub use photographs::views_of_facets;
+pub use setbacks::SetbackRule;
+pub use waste::{WasteClass, WasteTable};
 
 use nalgebra::Point3;
 
-use self::shape::Shape;
+use self::shape::{Part, Shape};
+use self::usable::usable_part;
+use crate::base::geometry::Polygon;
 use crate::base::ids::{BuildingId, FacetId};
 use crate::roofs::model::{Building, Facet, RoofModel};
 
@@ -34,6 +44,15 @@ const LEVEL_SLOPE_DEG: f64 = 1.0;
 /// A length for each kind of edge, in the order of [`RoofEdgeKind::ALL`], metres; `None` where
 /// there is no such edge.
 pub type Lengths = [Option<Estimate>; RoofEdgeKind::ALL.len()];
+
+/// What a rule of setbacks leaves of a facet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UsableArea {
+    /// Area on the facet's plane, square metres.
+    pub area_m2: Estimate,
+    /// What it is in plan, metres; empty where nothing is left.
+    pub plan: Polygon,
+}
 
 /// A facet in numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +73,8 @@ pub struct FacetReport {
     pub highest_m: Estimate,
     /// Lengths of its edges, those that it shares with others too.
     pub lengths: Lengths,
+    /// What each rule leaves of it, in the order of the rules.
+    pub usable: Vec<UsableArea>,
     /// Probability that it is a roof's face.
     pub probability: f64,
 }
@@ -88,43 +109,60 @@ pub struct BuildingReport {
     pub highest_m: Estimate,
     /// Lengths of its edges, each counted once.
     pub lengths: Lengths,
+    /// What each rule leaves of all facets, on their planes, square metres.
+    pub usable_m2: Vec<Estimate>,
     /// Probability that all of its facets are roof faces, each taken by itself.
     pub probability: f64,
 }
 
-/// All buildings of a model in numbers.
-pub fn roof_report(model: &RoofModel) -> Vec<BuildingReport> {
+impl BuildingReport {
+    /// Length of hips and valleys on a square metre of roof, metres.
+    pub fn cut_m_per_m2(&self) -> f64 {
+        let of = RoofEdgeKind::ALL.into_iter().zip(&self.lengths);
+        let cut = of.filter(|(kind, _)| matches!(kind, RoofEdgeKind::Hip | RoofEdgeKind::Valley));
+        cut.filter_map(|(_, length)| Some((*length)?.value))
+            .sum::<f64>()
+            / self.area_m2.value
+    }
+}
+
+/// All buildings of a model in numbers, with what rules of setbacks leave of their facets.
+pub fn roof_report(model: &RoofModel, rules: &[SetbackRule]) -> Vec<BuildingReport> {
     (model.buildings.iter().enumerate())
-        .map(|(i, building)| building_report(model, BuildingId::from_index(i), building))
+        .map(|(i, building)| building_report(model, BuildingId::from_index(i), building, rules))
         .collect()
 }
 
-fn building_report(model: &RoofModel, id: BuildingId, building: &Building) -> BuildingReport {
+fn building_report(
+    model: &RoofModel,
+    id: BuildingId,
+    building: &Building,
+    rules: &[SetbackRule],
+) -> BuildingReport {
     let members: Vec<(FacetId, &Facet)> = (building.facets.iter())
         .map(|&f| (f, &model.facets[f.index()]))
         .collect();
     let edges = roof_edges(&members);
     let shape = Shape::new(&members, building.ground_z);
+    // Per facet and rule.
+    let left_of = |(i, &(id, facet)): (usize, &(FacetId, &Facet))| -> Vec<(Polygon, Part)> {
+        let own = edges_of(&edges, id);
+        (rules.iter())
+            .map(|rule| usable_part(&shape, i, facet, &own, rule))
+            .collect()
+    };
+    let left: Vec<Vec<(Polygon, Part)>> = members.iter().enumerate().map(left_of).collect();
     let facets: Vec<FacetReport> = (members.iter().enumerate())
         .map(|(i, &(id, facet))| {
-            let slope_deg = facet_slope_deg(facet);
-            let [lowest_m, highest_m] = height_range([facet], building.ground_z);
-            let own = |e: &&RoofEdge| e.facet == id || e.borders_on(id);
-            let own: Vec<&RoofEdge> = edges.iter().filter(own).collect();
-            FacetReport {
-                facet: id,
-                area_m2: shape.estimate(&|x| shape.area(x, i)),
-                plan_area_m2: shape.estimate(&|x| shape.plan_area(x, i)),
-                slope_deg: Estimate {
-                    value: slope_deg,
-                    sigma: facet.uncertainty.as_ref().map(|u| u.slope_deg),
-                },
-                azimuth_deg: (slope_deg >= LEVEL_SLOPE_DEG).then(|| azimuth(&shape, i)),
-                lowest_m,
-                highest_m,
-                lengths: lengths(&shape, &own),
-                probability: facet.probability,
-            }
+            let height = height_range([facet], building.ground_z);
+            facet_report(
+                &shape,
+                i,
+                (id, facet),
+                &edges_of(&edges, id),
+                height,
+                &left[i],
+            )
         })
         .collect();
     let sum =
@@ -139,6 +177,12 @@ fn building_report(model: &RoofModel, id: BuildingId, building: &Building) -> Bu
         lowest_m,
         highest_m,
         lengths: lengths(&shape, &edges.iter().collect::<Vec<_>>()),
+        usable_m2: (0..rules.len())
+            .map(|rule| {
+                let area = |x: &[f64], i: usize| shape.area_of_part(x, i, &left[i][rule].1);
+                shape.estimate(&|x| sum(&area, x))
+            })
+            .collect(),
         probability: all().map(|facet| facet.probability).product(),
         edges: (edges.iter())
             .map(|edge| EdgeReport {
@@ -148,6 +192,42 @@ fn building_report(model: &RoofModel, id: BuildingId, building: &Building) -> Bu
             .collect(),
         facets,
     }
+}
+
+fn facet_report(
+    shape: &Shape,
+    i: usize,
+    (id, facet): (FacetId, &Facet),
+    edges: &[&RoofEdge],
+    [lowest_m, highest_m]: [Estimate; 2],
+    left: &[(Polygon, Part)],
+) -> FacetReport {
+    let slope_deg = facet_slope_deg(facet);
+    let usable = left.iter().map(|(plan, part)| UsableArea {
+        area_m2: shape.estimate(&|x| shape.area_of_part(x, i, part)),
+        plan: plan.clone(),
+    });
+    FacetReport {
+        facet: id,
+        area_m2: shape.estimate(&|x| shape.area(x, i)),
+        plan_area_m2: shape.estimate(&|x| shape.plan_area(x, i)),
+        slope_deg: Estimate {
+            value: slope_deg,
+            sigma: facet.uncertainty.as_ref().map(|u| u.slope_deg),
+        },
+        azimuth_deg: (slope_deg >= LEVEL_SLOPE_DEG).then(|| azimuth(shape, i)),
+        lowest_m,
+        highest_m,
+        lengths: lengths(shape, edges),
+        usable: usable.collect(),
+        probability: facet.probability,
+    }
+}
+
+/// The edges of a facet, those that it shares with others too.
+fn edges_of(edges: &[RoofEdge], id: FacetId) -> Vec<&RoofEdge> {
+    let is_own = |e: &&RoofEdge| e.facet == id || e.borders_on(id);
+    edges.iter().filter(is_own).collect()
 }
 
 fn facet_slope_deg(facet: &Facet) -> f64 {
@@ -194,3 +274,5 @@ fn lengths(shape: &Shape, edges: &[&RoofEdge]) -> Lengths {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod usable_tests;

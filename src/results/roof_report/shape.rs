@@ -22,7 +22,7 @@ use nalgebra::{Point2, Vector2};
 use super::edges::{RoofEdge, gradient};
 use super::estimate::Estimate;
 use super::straight_sides::{Corners, StraightSides, ring_pieces};
-use crate::base::geometry::mean_point;
+use crate::base::geometry::{Segment3, mean_point};
 use crate::base::ids::FacetId;
 use crate::base::math::{atan2, larger};
 use crate::roofs::model::Facet;
@@ -61,6 +61,25 @@ struct ShapeFacet<'a> {
     /// Area in plan as it is, square metres, and its first moment about the middle, cubic metres.
     area: f64,
     moment: Vector2<f64>,
+}
+
+/// A stretch of a facet's outline, the facet to its left.
+pub(super) struct Stretch {
+    /// Its ends on the facet's plane.
+    pub(super) segment: Segment3,
+    /// The straight side on which it lies.
+    pub(super) side: usize,
+    /// 1 where the facet grows with the side's number, -1 where it shrinks.
+    pub(super) grows: f64,
+}
+
+/// A part of a facet, some of whose borders move with straight sides.
+pub(super) struct Part {
+    /// Area in plan as it is, square metres.
+    pub(super) plan_area: f64,
+    /// Sides, and the length in plan that moves with each, metres; negative where the part shrinks
+    /// when the side's number grows.
+    pub(super) borders: Vec<(usize, f64)>,
 }
 
 /// A stretch of an outline between two corners.
@@ -182,6 +201,27 @@ impl<'a> Shape<'a> {
     pub(super) fn area(&self, x: &[f64], facet: usize) -> f64 {
         let slope = self.gradient(x, facet).norm_squared();
         self.plan_area(x, facet) * (1.0 + slope).sqrt()
+    }
+
+    /// The stretches of a facet's outline.
+    pub(super) fn stretches(&self, facet: usize) -> impl Iterator<Item = Stretch> {
+        let ShapeFacet { facet, pieces, .. } = &self.facets[facet];
+        pieces.iter().map(|piece| {
+            let [p, q] = piece.ends.map(|corner| self.corners.at(corner));
+            let [p, q] = [p, q].map(|p| facet.plane.lift(p.x, p.y));
+            Stretch {
+                segment: Segment3::new(p, q),
+                side: piece.side,
+                grows: piece.length.signum(),
+            }
+        })
+    }
+
+    /// Area of a part of a facet on its plane, square metres.
+    pub(super) fn area_of_part(&self, x: &[f64], facet: usize, part: &Part) -> f64 {
+        let grown = part.borders.iter().map(|&(side, length)| length * x[side]);
+        let slope = self.gradient(x, facet).norm_squared();
+        (part.plan_area + grown.sum::<f64>()) * (1.0 + slope).sqrt()
     }
 
     /// Volume between a facet and the ground, cubic metres.

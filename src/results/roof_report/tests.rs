@@ -9,13 +9,13 @@ use crate::roofs::solids::close_buildings;
 use crate::roofs::testing::uniform;
 
 /// A facet over a plan ring on `z = z0 + gx x + gy y`.
-fn roof(ring: &[(f64, f64)], [z0, gx, gy]: [f64; 3]) -> Facet {
+pub(super) fn roof(ring: &[(f64, f64)], [z0, gx, gy]: [f64; 3]) -> Facet {
     let lift = |&(x, y): &(f64, f64)| Point3::new(x, y, z0 + gx * x + gy * y);
     crate::roofs::testing::facet(&ring.iter().map(lift).collect::<Vec<_>>())
 }
 
 /// 10 x 8 m, eaves at 5 m, the ridge at y = 4 and 7 m.
-fn gable() -> Vec<Facet> {
+pub(super) fn gable() -> Vec<Facet> {
     vec![
         roof(
             &[(0.0, 0.0), (10.0, 0.0), (10.0, 4.0), (0.0, 4.0)],
@@ -29,7 +29,7 @@ fn gable() -> Vec<Facet> {
 }
 
 /// 12 x 8 m, equal slopes on four sides.
-fn hip() -> Vec<Facet> {
+pub(super) fn hip() -> Vec<Facet> {
     vec![
         roof(
             &[(0.0, 0.0), (12.0, 0.0), (8.0, 4.0), (4.0, 4.0)],
@@ -45,7 +45,7 @@ fn hip() -> Vec<Facet> {
 }
 
 /// Two wings with ridges at y = 3 and x = 13: a hip outside and a valley inside.
-fn l_shape() -> Vec<Facet> {
+pub(super) fn l_shape() -> Vec<Facet> {
     vec![
         roof(
             &[(0.0, 0.0), (16.0, 0.0), (13.0, 3.0), (0.0, 3.0)],
@@ -67,7 +67,7 @@ fn l_shape() -> Vec<Facet> {
 }
 
 /// A flat roof of 6 x 6 m at 8 m, and a lean-to that falls away from it, 2 m below.
-fn lean_to() -> Vec<Facet> {
+pub(super) fn lean_to() -> Vec<Facet> {
     vec![
         roof(
             &[(0.0, 0.0), (6.0, 0.0), (6.0, 6.0), (0.0, 6.0)],
@@ -83,7 +83,7 @@ fn lean_to() -> Vec<Facet> {
 fn report_of(facets: &[Facet]) -> BuildingReport {
     let (model, trace) = close_buildings(facets, |_| 0.0);
     assert_eq!(trace.rejected, []);
-    let mut buildings = roof_report(&model);
+    let mut buildings = roof_report(&model, &[]);
     assert_eq!(buildings.len(), 1);
     buildings.remove(0)
 }
@@ -238,7 +238,7 @@ proptest! {
         let turned: Vec<_> = facets.iter().map(|f| moved(f, angle, scale, shift)).collect();
         let before = report_of(&facets);
         let (model, _) = close_buildings(&turned, |_| 2.0);
-        let after = &roof_report(&model)[0];
+        let after = &roof_report(&model, &[])[0];
         let (a, b) = (named(&before.lengths), named(&after.lengths));
         prop_assert_eq!(a.len(), b.len());
         for (a, b) in a.iter().zip(&b) {
@@ -274,12 +274,12 @@ proptest! {
 }
 
 /// What the adjustment states of the facets of [`gable`] here.
-const SLOPE_DEG: f64 = 0.6;
+pub(super) const SLOPE_DEG: f64 = 0.6;
 const HEIGHT_M: f64 = 0.08;
 const PLAN_M: [f64; 2] = [0.05, 0.12];
-const SIDE_M: f64 = 0.07;
+pub(super) const SIDE_M: f64 = 0.07;
 
-fn with_uncertainty(mut facets: Vec<Facet>) -> Vec<Facet> {
+pub(super) fn with_uncertainty(mut facets: Vec<Facet>) -> Vec<Facet> {
     for facet in &mut facets {
         let corner = |&at: &Point3<f64>| CornerUncertainty {
             at,
@@ -341,7 +341,7 @@ fn measured(facets: &[Facet]) -> [f64; 6] {
 fn stated_deviations_are_the_spread_of_perturbed_planes_and_sides() {
     let facets = with_uncertainty(gable());
     let (model, _) = close_buildings(&facets, |_| 0.0);
-    let report = &roof_report(&model)[0];
+    let report = &roof_report(&model, &[])[0];
     let south = &report.facets[0];
     let length = |kind: RoofEdgeKind| {
         let edge = report.edges.iter().find(|e| e.edge.kind == kind);
@@ -413,7 +413,7 @@ fn lengths_scatter_as_stated_where_sides_meet_askew() {
         sides,
     });
     let (model, _) = close_buildings(&[facet], |_| 0.0);
-    let report = &roof_report(&model)[0];
+    let report = &roof_report(&model, &[])[0];
     let mut random = uniform(5);
     let mut found = Vec::new();
     for _ in 0..4000 {
@@ -457,7 +457,7 @@ fn what_is_not_known_has_no_deviation_and_spoils_only_what_it_is_part_of() {
     let mut facets = with_uncertainty(gable());
     facets[1].uncertainty = None;
     let (model, _) = close_buildings(&facets, |_| 0.0);
-    let report = &roof_report(&model)[0];
+    let report = &roof_report(&model, &[])[0];
     assert!(report.facets[0].area_m2.sigma.is_some());
     assert_eq!(report.facets[1].area_m2.sigma, None);
     assert_eq!(report.volume_m3.sigma, None);

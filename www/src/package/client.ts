@@ -24,6 +24,8 @@ export interface ReconstructOptions {
   load?: LoadOptions;
   /** Parameters that differ from `Session.defaultParams()` of the wasm module, for example `{ method: "combined" }`. */
   params?: Params;
+  /** Setbacks of your own beside the built-in ones of `roofs.json`: the text of a rule file. */
+  setbacks?: string;
   onProgress?: (progress: Progress) => void;
   /** Cancels the reconstruction: its promise is rejected with the signal's reason. */
   signal?: AbortSignal;
@@ -57,6 +59,7 @@ export interface Request {
   files: { path: string; bytes: Uint8Array }[];
   load: LoadOptions;
   params: Params;
+  setbacks?: string;
 }
 
 /** What the worker answers; the last reply to a request is "done" or "failed". */
@@ -95,6 +98,7 @@ export function clientOf(spawn: Spawn): RidgelineWorker {
       files: await Promise.all(contents),
       load: options.load ?? {},
       params: options.params ?? {},
+      ...(options.setbacks !== undefined && { setbacks: options.setbacks }),
     };
     signal?.throwIfAborted();
     port ??= spawn(

@@ -33,6 +33,7 @@ function reconstruct(session: Session, request: Request, post: (reply: Reply) =>
   const stages = session
     .chosenStages()
     .map((stage) => session.runStage(stage, (fraction: number) => report(stage, fraction)));
+  if (request.setbacks !== undefined) session.reportWith(request.setbacks);
   const names = session.exportNames();
   return {
     scene,

@@ -86,9 +86,18 @@ test("a building leads to its faces, the report is read in the page, and saved",
   await expect(report.getByRole("heading", { name: "Roof report" })).toBeVisible();
   // Its own style holds: a table as broad as the page.
   await expect(report.locator("table").first()).toHaveCSS("border-collapse", "collapse");
+  const buffer = Buffer.from('{"name":"own","setbacks_m":{"eave":0.5}}');
+  await report
+    .getByLabel("Own setbacks")
+    .setInputFiles({ name: "own.json", mimeType: "application/json", buffer });
+  await expect(report.getByRole("columnheader", { name: "own, m²" }).first()).toBeVisible();
+  await report.getByLabel("Feet").check();
+  await expect(report.getByRole("columnheader", { name: "own, ft²" }).first()).toBeVisible();
   await report.getByRole("button", { name: "Close" }).click();
   await expect(report).toHaveCount(0);
   expect((await save(page, "roof_report.html")).toString()).toContain("<h1>Roof report</h1>");
+  const { setbacks } = JSON.parse((await save(page, "roofs.json")).toString());
+  expect(setbacks.at(-1).name).toBe("own");
   expect(problems).toEqual([]);
 });
 

@@ -530,6 +530,8 @@ export class Session implements CoreSession {
     return name === "model.glb" ? glbOf(FACETS) : new TextEncoder().encode("{}");
   }
 
+  reportWith(): void {}
+
   exportNames(): string[] {
     return ["model.glb", "report.json"];
   }

@@ -11,8 +11,8 @@ use crate::base::geometry::{Polygon, bounds, signed_area};
 use crate::base::math::{atan2, sin_cos};
 use crate::roofs::model::{Building, Surface};
 
-/// The largest picture, millimetres.
-const PAGE: Vector2<f64> = Vector2::new(178.0, 66.0);
+/// The largest picture, millimetres: four of them fit above a plan.
+const PAGE: Vector2<f64> = Vector2::new(87.0, 44.0);
 
 /// Room around it, millimetres.
 const MARGIN: f64 = 2.0;
@@ -37,17 +37,19 @@ struct Viewer {
 }
 
 impl Viewer {
-    /// One that sees lines of this direction obliquely, and stands as far in the south as may be.
-    fn beside(direction: Vector2<f64>) -> Self {
+    /// One that sees lines of this direction obliquely, and stands as far in the south as may be
+    /// (side 0), or by so many quarters further round.
+    fn beside(direction: Vector2<f64>, side: usize) -> Self {
         let along = atan2(direction.y, direction.x).to_degrees();
-        let angles = (0..4).map(|quarter| along + TURN_DEG + 90.0 * f64::from(quarter));
+        let angles = [0.0, 90.0, 180.0, 270.0].map(|quarter| along + TURN_DEG + quarter);
         let place = |angle: f64| {
             let (sin, cos) = sin_cos(angle.to_radians());
             Vector2::new(cos, sin)
         };
         let places = angles.map(place);
-        let from = places.min_by(|p, q| p.y.total_cmp(&q.y));
-        let from = from.expect("there are four");
+        let is_farther = |i: &usize, j: &usize| places[*i].y.total_cmp(&places[*j].y);
+        let south = (0..4).min_by(is_farther).expect("there are four");
+        let from = places[(south + side) % 4];
         let (sin, cos) = sin_cos(ELEVATION_DEG.to_radians());
         Self {
             right: Vector3::new(-from.y, from.x, 0.0),
@@ -79,13 +81,13 @@ impl SeenFace {
     }
 }
 
-/// The picture of a building, its facets with their numbers.
-pub(super) fn axonometric(reported: &ReportedModel, index: usize) -> String {
+/// The picture of a building from one of four sides, its facets with their numbers.
+pub(super) fn axonometric(reported: &ReportedModel, index: usize, side: usize) -> String {
     let building = &reported.model.buildings[index];
     let edges = reported.buildings[index].edges.iter();
     let longest = edges.max_by(|a, b| a.length_m.value.total_cmp(&b.length_m.value));
     let direction = longest.map_or_else(Vector2::x, |e| e.edge.segment.direction().xy());
-    let viewer = Viewer::beside(direction);
+    let viewer = Viewer::beside(direction, side);
     let faces = seen_faces(building, &viewer);
     let [low, high] = bounds(faces.iter().flat_map(|f| f.picture.bounds()));
     let (extent, room) = (high - low, PAGE - Vector2::repeat(2.0 * MARGIN));
@@ -201,7 +203,7 @@ mod tests {
             flat(0.0, -3.0, 5.0),
         ];
         let (model, _) = close_buildings(&facets, |_| 0.0);
-        let viewer = Viewer::beside(Vector2::x());
+        let viewer = Viewer::beside(Vector2::x(), 0);
         assert!(viewer.towards.y < 0.0, "from the south");
         let faces = seen_faces(&model.buildings[0], &viewer);
         let order = back_to_front(&faces, &viewer);

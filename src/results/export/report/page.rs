@@ -1,14 +1,15 @@
 //! The page: one HTML file that needs no other, for the screen and for paper (A4 and letter).
 
-use std::fmt::Write;
-
 use nalgebra::{Point2, Vector2};
 
 use super::axonometric::axonometric;
+use super::html::{Html, area_with_unit, measure, with_sigma};
 use super::plan::{Plan, building_plan, overview};
 use super::reported::ReportedModel;
+use super::sheet::{sheet, sources, words};
 use super::svg::{Drawing, escaped};
-use crate::results::roof_report::{BuildingReport, Estimate, FacetReport, Lengths, RoofEdgeKind};
+use crate::base::math::sin_cos;
+use crate::results::roof_report::{BuildingReport, Estimate, FacetReport, RoofEdgeKind};
 
 const STYLE: &str = include_str!("style.css");
 
@@ -26,7 +27,8 @@ pub(super) fn page(reported: &ReportedModel) -> String {
     html.push(format_args!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width\">\n<title>Roof report</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>Roof report</h1>\n"
+         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>Roof report</h1>\n\
+         <input type=\"checkbox\" id=\"feet\"/><label for=\"feet\">Feet</label>\n<main>\n"
     ));
     let photographs = photographs(reported);
     summary(&mut html, reported);
@@ -39,17 +41,14 @@ pub(super) fn page(reported: &ReportedModel) -> String {
         for (i, name) in photographs.iter().enumerate() {
             let shows = |of: &&Vec<String>| of.contains(name);
             let faces = reported.photographs.iter().filter(shows).count();
-            html.row(&[
-                &(i + 1).to_string(),
-                &format!("<{name}"),
-                &faces.to_string(),
-            ]);
+            html.row(&[(i + 1).to_string(), escaped(name), faces.to_string()]);
         }
         html.end_table();
         let note = "It shows a face that it sees at least half of, past the other roofs.";
         html.push(format_args!("<p class=\"note\">{note}</p>\n</section>\n"));
     }
-    html.push(format_args!("</body>\n</html>\n"));
+    sources(&mut html, reported);
+    html.push(format_args!("</main>\n</body>\n</html>\n"));
     html.text
 }
 
@@ -64,7 +63,7 @@ fn photographs(reported: &ReportedModel) -> Vec<String> {
 fn summary(html: &mut Html, reported: &ReportedModel) {
     let buildings = &reported.buildings;
     let faces: usize = buildings.iter().map(|b| b.facets.len()).sum();
-    let area: f64 = buildings.iter().map(|b| b.area_m2.value).sum();
+    let area = area_with_unit(buildings.iter().map(|b| b.area_m2.value).sum());
     let system = match &reported.system {
         Some(system) => format!("Coordinates: {}.", escaped(system)),
         None => "The coordinate system is that of the input, which does not name it.".into(),
@@ -76,10 +75,14 @@ fn summary(html: &mut Html, reported: &ReportedModel) {
         return;
     }
     html.push(format_args!(
-        "<p>Buildings: {}. Roof faces: {faces}, {area:.1} m² in all. {system}</p>\n<p class=\"note\">{EXPLANATION}</p>\n",
+        "<p>Buildings: {}. Roof faces: {faces}, {area} in all. {system}</p>\n<p class=\"note\">{EXPLANATION}</p>\n",
         buildings.len()
     ));
-    html.figure(&overview(reported), "All buildings with their numbers");
+    figure(
+        html,
+        &overview(reported),
+        "All buildings with their numbers",
+    );
     legend(html);
     html.head(&[
         "Building",
@@ -96,15 +99,16 @@ fn summary(html: &mut Html, reported: &ReportedModel) {
     let named = reported.names.iter().zip(&reported.walls);
     for (report, (name, walls)) in buildings.iter().zip(named) {
         let seen = walls.count.map(|[all, seen]| format!("{seen} of {all}"));
-        let within = walls.volume_m3.map(|volume| format!("{volume:.0}"));
+        let within = walls.volume_m3.map(|value| Estimate { value, sigma: None });
+        let within = within.map(|volume| measure(volume, 3, 0));
         html.row(&[
-            name,
+            &escaped(name),
             &report.facets.len().to_string(),
-            &with_sigma(report.area_m2, 1),
-            &with_sigma(report.plan_area_m2, 1),
-            &with_sigma(report.lowest_m, 2),
-            &with_sigma(report.highest_m, 2),
-            &with_sigma(report.volume_m3, 0),
+            &measure(report.area_m2, 2, 1),
+            &measure(report.plan_area_m2, 2, 1),
+            &measure(report.lowest_m, 1, 2),
+            &measure(report.highest_m, 1, 2),
+            &measure(report.volume_m3, 3, 0),
             &seen.unwrap_or_default(),
             &within.unwrap_or_default(),
             &percent(report.probability),
@@ -138,16 +142,18 @@ fn building(
 ) {
     let name = escaped(&reported.names[index]);
     html.push(format_args!("<section>\n<h2>{name}</h2>\n"));
-    let picture = axonometric(reported, index);
-    html.push(format_args!("<figure>{picture}</figure>\n"));
-    let caption = "Lengths in metres along the roof; numbers of faces with slope and fall";
-    html.figure(&building_plan(reported, report), caption);
+    let sides = [0, 1, 2, 3].map(|side| axonometric(reported, index, side));
+    let sides = sides.concat();
+    html.push(format_args!("<figure class=\"sides\">{sides}</figure>\n"));
+    let caption = "Lengths along the roof; numbers of faces with slope and fall";
+    figure(html, &building_plan(reported, report), caption);
     html.push(format_args!("<h3>Faces</h3>\n"));
     html.head(&[
         "Face",
         "Area, m²",
         "In plan, m²",
         "Slope, °",
+        "Pitch",
         "Falls to, °",
         "Lowest, m",
         "Highest, m",
@@ -162,72 +168,50 @@ fn building(
         let numbers: Vec<String> = numbers.map(|i| (i + 1).to_string()).collect();
         html.row(&[
             &facet.facet.0.to_string(),
-            &with_sigma(facet.area_m2, 2),
-            &with_sigma(facet.plan_area_m2, 2),
+            &measure(facet.area_m2, 2, 2),
+            &measure(facet.plan_area_m2, 2, 2),
             &with_sigma(facet.slope_deg, 1),
+            &pitch(facet.slope_deg.value),
             &facet.azimuth_deg.map_or_else(|| "level".into(), direction),
-            &with_sigma(facet.lowest_m, 2),
-            &with_sigma(facet.highest_m, 2),
+            &measure(facet.lowest_m, 1, 2),
+            &measure(facet.highest_m, 1, 2),
             &percent(facet.probability),
-            &format!("<{}", numbers.join(" ")),
+            &numbers.join(" "),
         ]);
     }
     html.end_table();
-    html.push(format_args!("<h3>Lengths, m</h3>\n"));
+    html.push(format_args!("<h3>Lengths of faces</h3>\n"));
     lengths(html, report);
+    sheet(html, reported, report);
     html.push(format_args!("</section>\n"));
 }
 
-/// Lengths by kind, of every face and of the whole.
+/// Lengths by kind, of every face.
 fn lengths(html: &mut Html, report: &BuildingReport) {
     let kinds = || (0..RoofEdgeKind::ALL.len()).filter(|&k| report.lengths[k].is_some());
-    let mut head = vec!["Face"];
-    head.extend(kinds().map(|k| words(RoofEdgeKind::ALL[k])));
+    let mut head = vec!["Face".to_owned()];
+    head.extend(kinds().map(|k| format!("{}, m", words(RoofEdgeKind::ALL[k]))));
     html.head(&head);
-    let fields = |lengths: &Lengths| -> Vec<String> {
-        let field = |k: usize| lengths[k].map_or_else(String::new, |l| with_sigma(l, 2));
-        kinds().map(field).collect()
-    };
-    let mut row = |name: &str, lengths: &Lengths| {
-        let fields = fields(lengths);
-        let mut all = vec![name];
-        all.extend(fields.iter().map(String::as_str));
-        html.row(&all);
-    };
-    for facet in &report.facets {
-        let FacetReport { facet, lengths, .. } = facet;
-        row(&facet.0.to_string(), lengths);
+    for FacetReport { facet, lengths, .. } in &report.facets {
+        let field = |k: usize| lengths[k].map_or_else(String::new, |l| measure(l, 1, 2));
+        let mut fields = vec![facet.0.to_string()];
+        fields.extend(kinds().map(field));
+        html.row(&fields);
     }
-    row("all, each edge once", &report.lengths);
     html.end_table();
 }
 
-/// A kind of edge in words.
-fn words(kind: RoofEdgeKind) -> &'static str {
-    match kind {
-        RoofEdgeKind::Ridge => "Ridge",
-        RoofEdgeKind::Hip => "Hip",
-        RoofEdgeKind::Valley => "Valley",
-        RoofEdgeKind::Transition => "Change of slope",
-        RoofEdgeKind::Eave => "Eave",
-        RoofEdgeKind::Rake => "Rake",
-        RoofEdgeKind::TopEdge => "Top edge",
-        RoofEdgeKind::Abutment => "Abutment",
-    }
+fn figure(html: &mut Html, plan: &Plan, caption: &str) {
+    let Plan { svg, scale } = plan;
+    html.push(format_args!(
+        "<figure>{svg}<figcaption>{caption}; 1:{scale} where it is printed at its size.</figcaption></figure>\n"
+    ));
 }
 
-/// A number with its standard deviation, both with so many decimals; no deviation is shown as none.
-fn with_sigma(estimate: Estimate, decimals: usize) -> String {
-    let Estimate { value, sigma } = estimate;
-    match sigma {
-        // Half of the last digit, so that nothing is shown as exact.
-        Some(sigma) => {
-            let unit = (0..decimals).fold(1.0, |unit, _| unit / 10.0);
-            let sigma = sigma.max(unit);
-            format!("{value:.decimals$} ± {sigma:.decimals$}")
-        }
-        None => format!("{value:.decimals$}"),
-    }
+/// A slope as its rise on a run of twelve.
+fn pitch(slope_deg: f64) -> String {
+    let (sin, cos) = sin_cos(slope_deg.to_radians());
+    format!("{:.1}:12", 12.0 * sin / cos)
 }
 
 /// A direction as an angle and a point of the compass.
@@ -239,51 +223,4 @@ fn direction(azimuth: Estimate) -> String {
 
 fn percent(probability: f64) -> String {
     format!("{:.0} %", 100.0 * probability)
-}
-
-/// A page in the making.
-#[derive(Default)]
-struct Html {
-    text: String,
-}
-
-impl Html {
-    fn push(&mut self, content: std::fmt::Arguments) {
-        (self.text.write_fmt(content)).expect("a String takes all that is written");
-    }
-
-    fn figure(&mut self, plan: &Plan, caption: &str) {
-        let Plan { svg, scale } = plan;
-        self.push(format_args!(
-            "<figure>{svg}<figcaption>{caption}; 1:{scale} where it is printed at its size.</figcaption></figure>\n"
-        ));
-    }
-
-    /// Begins a table. Names that begin with < stand on the left.
-    fn head(&mut self, names: &[&str]) {
-        self.push(format_args!("<table>\n<thead>"));
-        self.cells("th", names);
-        self.push(format_args!("</thead>\n<tbody>\n"));
-    }
-
-    fn row(&mut self, fields: &[&str]) {
-        self.cells("td", fields);
-    }
-
-    fn cells(&mut self, element: &str, fields: &[&str]) {
-        self.push(format_args!("<tr>"));
-        for field in fields {
-            let (class, words) = match field.strip_prefix('<') {
-                Some(words) => (" class=\"left\"", words),
-                None => ("", *field),
-            };
-            let words = escaped(words);
-            self.push(format_args!("<{element}{class}>{words}</{element}>"));
-        }
-        self.push(format_args!("</tr>\n"));
-    }
-
-    fn end_table(&mut self) {
-        self.push(format_args!("</tbody>\n</table>\n"));
-    }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::{Point2, Point3, Vector2};
 
+use super::html::in_feet;
 use super::reported::ReportedModel;
 use super::svg::{Drawing, place_inside};
 use crate::base::geometry::Polygon;
@@ -93,12 +94,10 @@ impl Sheet {
             let tick = Vector2::new(0.0, 1.0);
             drawing.line(end - tick, end + tick, "bar");
         }
-        drawing.words(
-            b + Vector2::new(6.0, 1.0),
-            0.0,
-            "small",
-            &format!("{length} m"),
-        );
+        let at = b + Vector2::new(6.0, 1.0);
+        drawing.words(at, 0.0, "small m", &format!("{length} m"));
+        let feet = in_feet(length, 1);
+        drawing.words(at, 0.0, "small ft", &format!("{feet:.1} ft"));
         let foot = Point2::new(self.size().x - 5.0, y + 1.5);
         let tip = foot - Vector2::new(0.0, 7.0);
         drawing.line(foot, tip, "bar");
@@ -177,7 +176,9 @@ fn draw_dimension(sheet: &Sheet, drawing: &mut Drawing, edge: &RoofEdge, length:
         turn += 180.0;
     }
     let at = nalgebra::center(&a, &b) + out * DIMENSION_OFFSET_MM;
-    drawing.words(at, turn, "dimension", &format!("{length:.2}"));
+    drawing.words(at, turn, "dimension m", &format!("{length:.2}"));
+    let feet = in_feet(length, 1);
+    drawing.words(at, turn, "dimension ft", &format!("{feet:.2}"));
 }
 
 /// The plan of all buildings with their numbers.

@@ -10,7 +10,8 @@ use serde_json::Value;
 use crate::base::geometry::{Plane, mean_point, plan_sides, vector_area};
 use crate::base::ids::{BuildingId, FacetId};
 use crate::orienting::known::json_of;
-use crate::orienting::orientation::{PlanUnit, SystemUnits, units_of};
+use crate::orienting::orientation::{PlanUnit, SystemUnits, epsg_of, units_of};
+use crate::orienting::scene::Survey;
 use crate::roofs::model::{
     Building, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
     Solid, SolidFace, Surface,
@@ -31,6 +32,7 @@ pub(super) struct ReadModel {
     pub(super) walls: Vec<ReadWalls>,
     pub(super) origin: Vector3<f64>,
     pub(super) system: Option<String>,
+    pub(super) survey: Survey,
 }
 
 /// Reads a file; an error says what was expected and where.
@@ -67,6 +69,7 @@ pub(super) fn read_model(bytes: &[u8]) -> Result<ReadModel, String> {
         walls: Vec::new(),
         origin,
         system: system(&file["metadata"]),
+        survey: survey(&file["metadata"]),
     };
     for (name, object) in &objects {
         if let Some(geometry) = solid_of(object) {
@@ -121,8 +124,23 @@ fn system(metadata: &Value) -> Option<String> {
             _ => name,
         });
     }
-    let title = metadata["title"].as_str()?;
-    title.strip_prefix("Roofs; coordinates ").map(str::to_owned)
+    title(metadata).map(str::to_owned)
+}
+
+/// What ridgeline says of coordinates that have no code.
+fn title(metadata: &Value) -> Option<&str> {
+    metadata["title"]
+        .as_str()?
+        .strip_prefix("Roofs; coordinates ")
+}
+
+/// Where on the Earth the model stands, as far as its file says.
+fn survey(metadata: &Value) -> Survey {
+    Survey {
+        epsg: metadata["referenceSystem"].as_str().and_then(epsg_of),
+        anchor: title(metadata).and_then(Survey::anchor_described),
+        ..Survey::default()
+    }
 }
 
 /// The solid with semantics whose walls stand below the eaves (LoD 2.2), else the last one, which

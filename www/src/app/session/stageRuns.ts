@@ -184,8 +184,11 @@ export async function download(name: string): Promise<void> {
   }
 }
 
-/** An output file; null where there is none, or something else took its turn. */
-export async function outputFile(name: string): Promise<Uint8Array<ArrayBuffer> | null> {
+/**
+ * An output file; null where there is none, or something else took its turn. With `setbacks`, the text of a rule file,
+ * the files of the report are made anew before.
+ */
+export async function outputFile(name: string, setbacks?: string): Promise<Uint8Array<ArrayBuffer> | null> {
   const words = `Writing ${name}`;
   let bytes: Uint8Array<ArrayBuffer> | null = null;
   await actions.perform({ kind: "save", name, phase: "save", words }, async (turn) => {
@@ -196,6 +199,9 @@ export async function outputFile(name: string): Promise<Uint8Array<ArrayBuffer> 
       if (!hasResults() && last !== undefined) {
         await runEverything(turn);
         turn.enter("save", words);
+      }
+      if (setbacks !== undefined) {
+        await engine.call("reportWith", setbacks);
       }
       bytes = await engine.call("exportFile", name);
     }

@@ -15,6 +15,7 @@ const GROUPS: readonly (readonly [title: string, files: Files])[] = [
       "buildings.csv": "buildings as a table",
       "facets.csv": "roof faces as a table",
       "edges.csv": "roof edges as a table",
+      "roofs.json": "all of it for programs, with usable areas",
     },
   ],
   ["CAD", { "model.dxf": "3DFACE and LINE, AutoCAD R12" }],

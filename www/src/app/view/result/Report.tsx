@@ -6,8 +6,8 @@ const NAME = "roof_report.html";
 
 export function Report() {
   const [html, show] = useState<string | null>(null);
-  const open = async () => {
-    const bytes = await outputFile(NAME);
+  const open = async (setbacks?: string) => {
+    const bytes = await outputFile(NAME, setbacks);
     if (bytes !== null) {
       show(new TextDecoder().decode(bytes));
     }
@@ -17,12 +17,26 @@ export function Report() {
       <button type="button" onClick={() => void open()}>
         Report
       </button>
-      {html !== null && <Opened html={html} close={() => show(null)} />}
+      {html !== null && <Opened html={html} change={open} close={() => show(null)} />}
     </>
   );
 }
 
-function Opened({ html, close }: { html: string; close: () => void }) {
+interface Props {
+  html: string;
+  change: (setbacks: string) => Promise<void>;
+  close: () => void;
+}
+
+function Opened({ html, change, close }: Props) {
+  const take = async (input: HTMLInputElement) => {
+    const text = await input.files?.[0]?.text();
+    if (text !== undefined) {
+      // What is wrong with it stands beside the model.
+      close();
+      await change(text);
+    }
+  };
   const dialog = useRef<HTMLDialogElement>(null);
   const page = useRef<HTMLDivElement>(null);
   useEffect(() => {
@@ -44,6 +58,13 @@ function Opened({ html, close }: { html: string; close: () => void }) {
         <button type="button" onClick={() => void download(NAME)}>
           Save report
         </button>
+        <button type="button" onClick={() => void download("roofs.json")}>
+          Save as JSON
+        </button>
+        <label>
+          Own setbacks{" "}
+          <input type="file" accept=".json" onChange={(event) => void take(event.currentTarget)} />
+        </label>
         <button type="button" onClick={() => dialog.current?.close()}>
           Close
         </button>
