@@ -131,17 +131,24 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
   expect(problems).toEqual([]);
 });
 
-test("the page and the demo scene work without a network after the first load", async ({ page, context }) => {
-  await page.goto("/");
-  await page.evaluate(async () => {
-    await navigator.serviceWorker.ready;
+test.describe("without a network", () => {
+  test.use({ serviceWorkers: "allow" });
+
+  test("the page and the demo scene work without a network after the first load", async ({
+    page,
+    context,
+  }) => {
+    await page.goto("/");
+    await page.evaluate(async () => {
+      await navigator.serviceWorker.ready;
+    });
+    await expect
+      .poll(() => page.evaluate(() => navigator.serviceWorker.controller !== null), { timeout: 20_000 })
+      .toBe(true);
+    await context.setOffline(true);
+    await page.reload();
+    await openDemo(page);
+    await waitForStage(page, "segments", 60_000);
+    await expect(page.getByRole("alert")).toHaveCount(0);
   });
-  await expect
-    .poll(() => page.evaluate(() => navigator.serviceWorker.controller !== null), { timeout: 20_000 })
-    .toBe(true);
-  await context.setOffline(true);
-  await page.reload();
-  await openDemo(page);
-  await waitForStage(page, "segments", 60_000);
-  await expect(page.getByRole("alert")).toHaveCount(0);
 });
