@@ -107,9 +107,10 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
   await test.step("one that was closed is listed at the entrance", async () => {
     await showProject(page);
     await page.getByRole("button", { name: "New project" }).click();
-    await page.waitForTimeout(600);
+    const listed = page.getByRole("region", { name: "Your last projects" }).getByText("Own files");
+    await expect(listed).toBeVisible();
     await page.reload();
-    await page.getByRole("region", { name: "Your last projects" }).getByText("Own files").click();
+    await listed.click();
     await showProject(page);
     await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
     await expect(stage(page, "segments")).toHaveAttribute("data-status", "done");
