@@ -8,8 +8,12 @@ const PORT = Number(process.env["PORT"] ?? 4173);
 export default defineConfig({
   testDir: "test/e2e",
   outputDir: "test-results",
-  // What measures time (@alone) has the machine for itself.
   workers: 2,
+  projects: [
+    { name: "page", grepInvert: /@alone/ },
+    // What measures time has the machine for itself.
+    { name: "alone", grep: /@alone/, dependencies: ["page"], workers: 1 },
+  ],
   timeout: 150_000,
   // Drawing in software may be late on a busy machine; what fails twice is wrong.
   retries: 1,
@@ -19,14 +23,17 @@ export default defineConfig({
     baseURL: `http://127.0.0.1:${PORT}`,
     viewport: { width: 1280, height: 800 },
     screenshot: "only-on-failure",
+    // Copies the whole site for each page: where it is what is asked about, it is allowed.
+    serviceWorkers: "block",
     // What turns costs a processor that draws in software.
     contextOptions: { reducedMotion: "reduce" },
     launchOptions: {
       ...(existsSync(chromium) ? { executablePath: chromium } : {}),
       args: [
         "--no-sandbox",
+        // Software graphics for WebGL alone, as browsers have them without a graphics card: the page is drawn without.
         "--use-gl=angle",
-        "--use-angle=swiftshader",
+        "--use-angle=swiftshader-webgl",
         "--enable-unsafe-swiftshader",
         // Without a graphics card photographs are drawn by the processor, as browsers do by themselves.
         "--disable-accelerated-2d-canvas",

@@ -1,3 +1,4 @@
+/** The demo scene by one click: shaders made before, a preliminary model soon, and the run's own. */
 import { expect, test } from "@playwright/test";
 import {
   lookOf,
@@ -7,20 +8,75 @@ import {
   runUpTo,
   save,
   stage,
+  steadyLook,
   switchLayer,
   waitForStage,
   watch,
 } from "./helpers";
 
+declare global {
+  interface Window {
+    /** How many shaders were asked for so far. */
+    shaders: number;
+  }
+}
+
+function countShaders(): void {
+  window.shaders = 0;
+  const { linkProgram } = WebGL2RenderingContext.prototype;
+  WebGL2RenderingContext.prototype.linkProgram = function (this: WebGL2RenderingContext, program) {
+    window.shaders += 1;
+    linkProgram.call(this, program);
+  };
+}
+
 test("one click turns the demo scene into a textured model that can be downloaded", async ({ page }) => {
   const { problems } = watch(page);
+  await page.addInitScript(countShaders);
   await page.goto("/");
+  const made = () => page.evaluate(() => window.shaders);
+  await page.locator(".turntable.drawn").waitFor();
+  // Behind the entrance the workbench makes its own, until all are there.
+  let before = -1;
+  await expect(async () => {
+    const now = await made();
+    const isSettled = now === before && now > 8;
+    before = now;
+    expect(isSettled).toBe(true);
+  }).toPass({ intervals: [1000], timeout: 60_000 });
   await openDemo(page);
-  await waitForStage(page, "model");
-  await expect(page.getByRole("alert")).toHaveCount(0);
-  await expect(page.locator(".view")).toHaveCount(6);
 
   const canvas = page.getByTestId("viewer");
+  const mark = page.getByTestId("preliminary");
+  await test.step("a preliminary model is shown before the facets", async () => {
+    await expect(mark).toHaveText(/preliminary/, { timeout: 60_000 });
+    // Not a result: the stage has none, nothing can be saved or corrected.
+    await expect(stage(page, "facets")).not.toHaveAttribute("data-status", "done");
+    await expect(page.getByRole("button", { name: "Report" })).toHaveCount(0);
+    await expect(page.getByTestId("corrections")).toHaveCount(0);
+    let drawn = 0;
+    while (drawn < 0.05 && (await mark.count()) > 0) {
+      const look = await lookOf(page, canvas);
+      // A picture counts if the mark still stands after it was taken.
+      drawn = (await mark.count()) > 0 ? look.drawn : drawn;
+    }
+    expect(drawn).toBeGreaterThan(0.05);
+  });
+
+  await test.step("the run's own takes its place", async () => {
+    await waitForStage(page, "model");
+    await expect(mark).toHaveCount(0);
+    await expect(page.getByRole("button", { name: "Model", exact: true })).toHaveAttribute(
+      "aria-pressed",
+      "true",
+    );
+    await expect(page.getByRole("alert")).toHaveCount(0);
+    await expect(page.locator(".view")).toHaveCount(6);
+    await steadyLook(page, canvas);
+    // No shader was made since.
+    expect(await made()).toBe(before);
+  });
+
   await test.step("the viewer shows a textured model", async () => {
     await expect(async () => {
       const look = await lookOf(page, canvas);

@@ -93,21 +93,21 @@ test("a function runs on the site's own page, where it may, and a loop without e
 });
 
 test("an exercise is done in a figure: a pick, a wrong pick, the answer", async ({ page }) => {
-  const problems = await open(page, "/exercises.html#hipEnd");
+  const problems = await open(page, "/exercises.html#trueCandidate");
   const exercise = page.locator("ridgeline-exercise");
-  const facets = exercise.locator(".plan-facet");
-  await expect(facets.first()).toBeVisible({ timeout: 60_000 });
+  const candidates = exercise.locator(".candidates tbody button");
+  await expect(candidates.first()).toBeVisible({ timeout: 60_000 });
   const status = exercise.getByRole("status").last();
   const check = exercise.getByRole("button", { name: "Check" });
   await expect(check).toBeEnabled();
   const heard = new Set<string>();
-  for (let i = 0; i < (await facets.count()); i += 1) {
-    await facets.nth(i).press("Enter");
+  for (let i = 0; i < (await candidates.count()); i += 1) {
+    await candidates.nth(i).press("Enter");
     await check.press("Enter");
     await expect(status).not.toBeEmpty();
     heard.add(((await status.textContent()) ?? "").split(" ").slice(0, 2).join(" "));
   }
-  expect([...heard].sort()).toEqual(["Right.", "a gable", "beside the"]);
+  expect([...heard].sort()).toEqual(["Right.", "another edge", "beside the"]);
   for (const colorScheme of themes) {
     await page.emulateMedia({ colorScheme });
     expect(await axeFindings(page), colorScheme).toEqual([]);

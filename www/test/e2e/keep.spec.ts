@@ -107,9 +107,10 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
   await test.step("one that was closed is listed at the entrance", async () => {
     await showProject(page);
     await page.getByRole("button", { name: "New project" }).click();
-    await page.waitForTimeout(600);
+    const listed = page.getByRole("region", { name: "Your last projects" }).getByText("Own files");
+    await expect(listed).toBeVisible();
     await page.reload();
-    await page.getByRole("region", { name: "Your last projects" }).getByText("Own files").click();
+    await listed.click();
     await showProject(page);
     await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
     await expect(stage(page, "segments")).toHaveAttribute("data-status", "done");
@@ -131,17 +132,24 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
   expect(problems).toEqual([]);
 });
 
-test("the page and the demo scene work without a network after the first load", async ({ page, context }) => {
-  await page.goto("/");
-  await page.evaluate(async () => {
-    await navigator.serviceWorker.ready;
+test.describe("without a network", () => {
+  test.use({ serviceWorkers: "allow" });
+
+  test("the page and the demo scene work without a network after the first load", async ({
+    page,
+    context,
+  }) => {
+    await page.goto("/");
+    await page.evaluate(async () => {
+      await navigator.serviceWorker.ready;
+    });
+    await expect
+      .poll(() => page.evaluate(() => navigator.serviceWorker.controller !== null), { timeout: 20_000 })
+      .toBe(true);
+    await context.setOffline(true);
+    await page.reload();
+    await openDemo(page);
+    await waitForStage(page, "segments", 60_000);
+    await expect(page.getByRole("alert")).toHaveCount(0);
   });
-  await expect
-    .poll(() => page.evaluate(() => navigator.serviceWorker.controller !== null), { timeout: 20_000 })
-    .toBe(true);
-  await context.setOffline(true);
-  await page.reload();
-  await openDemo(page);
-  await waitForStage(page, "segments", 60_000);
-  await expect(page.getByRole("alert")).toHaveCount(0);
 });

@@ -1,6 +1,6 @@
 /** The page stays at hand while the pipeline runs: no task of the main thread over 100 ms. */
 import { expect, test } from "@playwright/test";
-import { openDemo, steadyLook, waitForStage } from "./helpers";
+import { openDemo, waitForStage } from "./helpers";
 
 const MOST_MS = 100;
 
@@ -14,8 +14,6 @@ interface LongTask {
 declare global {
   interface Window {
     longTasks: LongTask[];
-    /** How many shaders were asked for so far. */
-    shaders: number;
   }
 }
 
@@ -23,7 +21,6 @@ declare global {
 function observe(): void {
   const waits: [start: number, ms: number][] = [];
   let depth = 0;
-  window.shaders = 0;
   const timed = <T>(call: () => T): T => {
     const start = performance.now();
     depth += 1;
@@ -41,7 +38,6 @@ function observe(): void {
     const { value } = Object.getOwnPropertyDescriptor(gl, name) ?? {};
     if (typeof value === "function" && name !== "constructor") {
       gl[name] = function (this: unknown, ...args: unknown[]) {
-        window.shaders += name === "linkProgram" ? 1 : 0;
         return timed(() => value.apply(this, args));
       };
     }
@@ -80,23 +76,4 @@ test("nothing holds the page up while the pipeline runs", { tag: "@alone" }, asy
   const tasks = await page.evaluate(() => window.longTasks);
   test.info().annotations.push({ type: "long tasks", description: JSON.stringify(tasks) });
   expect(tasks.filter(({ ms, glMs }) => ms - glMs > MOST_MS)).toEqual([]);
-});
-
-test("all shaders are made before there is anything to show", async ({ page }) => {
-  await page.addInitScript(observe);
-  await page.goto("/");
-  const made = () => page.evaluate(() => window.shaders);
-  await page.locator(".turntable.drawn").waitFor();
-  // Behind the entrance the workbench makes its own, until all are there.
-  let before = -1;
-  await expect(async () => {
-    const now = await made();
-    const isSettled = now === before && now > 8;
-    before = now;
-    expect(isSettled).toBe(true);
-  }).toPass({ intervals: [3000], timeout: 60_000 });
-  await openDemo(page);
-  await waitForStage(page, "model");
-  await steadyLook(page, page.getByTestId("viewer"));
-  expect(await made()).toBe(before);
 });

@@ -13,6 +13,7 @@ test("a mistake in the orientation is undone with one click", async ({ page }) =
   const check = page.getByTestId("orientation-check");
   await expect(check).toBeVisible({ timeout: 60_000 });
   await expect(check).toHaveAttribute("data-finding", "explained");
+  await expect(page.getByRole("alert")).toContainText("gon");
   await check.getByText("What was tried").click();
   const rows = check.locator("tbody tr");
   expect(await rows.count()).toBeGreaterThan(4);

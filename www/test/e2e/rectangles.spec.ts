@@ -2,11 +2,13 @@
 import { expect, test } from "@playwright/test";
 import {
   chooseMethod,
+  give,
+  houseFiles,
   lookOf,
   looksOfHalves,
-  openDemo,
   openParameters,
   openTab,
+  runButton,
   runUpTo,
   showFace,
   stage,
@@ -36,17 +38,16 @@ test("a method that is chosen while the core is still compiled stays chosen", as
   expect(problems).toEqual([]);
 });
 
-test("regions, directions, clusters and planes of the demo scene", async ({ page }) => {
-  // Both methods run, where graphics are computed in software, too.
-  test.slow();
+test("regions, directions, clusters and planes of a house", async ({ page }) => {
   const { problems } = watch(page);
   await page.goto("/#method=rectangles");
-  await openDemo(page);
+  await give(page, houseFiles());
   await showFace(page, "Method");
   await expect(tabOf(page, "Clusters")).toBeVisible();
   await expect(tabOf(page, "Half-planes")).toHaveCount(0);
   await expect(stage(page, "regions")).toBeVisible();
   await expect(stage(page, "segments")).toHaveCount(0);
+  await runButton(page).click();
   await waitForStage(page, "model");
   const inspector = page.getByTestId("inspector");
   const image = page.locator(".image-view canvas").first();

@@ -18,8 +18,9 @@ export function FigureView(props: ViewProps<FigureExercise>) {
   const place = useRef<HTMLDivElement>(null);
   const begin = async (of: RidgelineFigure) => {
     if (isDemo(of.shown)) {
-      of.state = await exercise.begin(of);
-      setFigure(of);
+      const asked = askedOf(of);
+      of.state = await exercise.begin(asked);
+      setFigure(asked);
     } else {
       setProblem("The exercises are about the demo scene, and this is another one.");
     }
@@ -113,6 +114,16 @@ export function FigureView(props: ViewProps<FigureExercise>) {
       </div>
     </ExerciseFrame>
   );
+}
+
+/** Exercises take it apart: the element's own method would lose its element. */
+function askedOf(figure: RidgelineFigure): Asked {
+  return {
+    get shown() {
+      return figure.shown;
+    },
+    ask: figure.ask.bind(figure),
+  };
 }
 
 interface SolutionProps {

@@ -22,9 +22,11 @@ export function buildFans(
   sides: readonly SideRecord[] = [],
 ): Layer {
   const object = zUpGroup();
-  const corners = halfPlanes.map((halfPlane) => fanCorners(halfPlane, lines));
+  // While lines have been found anew, these are still of the earlier ones.
+  const areOfLines = [...halfPlanes, ...sides].every(({ line }) => (line + 1) * LINE_STRIDE <= lines.length);
+  const corners = areOfLines ? halfPlanes.map((halfPlane) => fanCorners(halfPlane, lines)) : [];
   const all = fanMesh(corners, PALETTE.halfPlane);
-  const rejectedSides = sides.filter(isRejected);
+  const rejectedSides = areOfLines ? sides.filter(isRejected) : [];
   const rejected = rejectedLines(rejectedSides, lines);
   object.add(all, rejected);
   const chosen = new SelectedObject(object);
