@@ -52,7 +52,9 @@ function targets([u, v]: [number, number]): Target[] {
       return [];
     }
     const name = element.getAttribute("aria-label") ?? element.textContent ?? "";
-    const isText = element.matches("textarea, input:not([type=checkbox], [type=radio], [type=range], [type=file])");
+    const isText = element.matches(
+      "textarea, input:not([type=checkbox], [type=radio], [type=range], [type=file])",
+    );
     const kind = element.matches("select") ? "select" : isText ? "text" : "click";
     return [{ kind, name: `${element.tagName} ${name.trim().slice(0, 40)}`, x, y }];
   });
