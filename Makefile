@@ -48,7 +48,7 @@ PORT ?= 4173
 PYTHON ?= python3
 
 demo: $(SITE)
-	cd www && npm run preview -- --port $(PORT)
+	cd www && npm run --silent preview -- --port $(PORT)
 
 build: $(SITE)
 	@echo "The site is in www/dist."
@@ -124,16 +124,19 @@ BOUND = wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@
 # In few pieces the unused half of the crate is left out more thoroughly: a visitor waits for this module.
 SMALL := --config 'profile.page.package.ridgeline.codegen-units=2'
 $(ORIENTATION): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(NPM) $(CHOSEN)
+	@echo "== The module that orients photographs: three minutes on two cores"
 	$(WASM) --no-default-features $(SMALL)
 	$(BOUND) orientation
 
 # Cargo puts both in the same place: the later one stays, and the tests in wasm are of that.
 $(PACKAGE): $(ORIENTATION)
+	@echo "== The module that reconstructs: two minutes on two cores"
 	$(WASM)
 	$(BOUND) ridgeline
 
 # What the page shows before anything is computed in the browser: the demo scene's model, made by the page's own core.
 $(ENTRANCE): $(PACKAGE) www/scripts/entrance.mjs tests/wasm/session.mjs $(shell find www/public/demo -type f)
+	@echo "== The demo scene's model and the site: a few seconds"
 	node www/scripts/entrance.mjs
 
 $(SITE): $(PACKAGE) $(ORIENTATION) $(ENTRANCE) $(NPM) $(WWW_SOURCES)
@@ -157,6 +160,7 @@ BUILD_TOOL = RUSTFLAGS= cargo build --locked --manifest-path www/tools/Cargo.tom
 
 $(WASM_BINDGEN):
 	@$(SAME_VERSION)
+	@echo "== The program that binds wasm to the page: compiled once, half a minute on two cores"
 	$(BUILD_TOOL) --package bindgen
 	mkdir -p $(TOOLS)
 	cp target/tools/debug/bindgen $@
@@ -168,6 +172,7 @@ $(WASM_PACK): $(WASM_BINDGEN)
 
 # The lock file's content decides, not its time: a fresh checkout of the same lock installs nothing.
 $(NPM):
+	@echo "== The page's packages: a few seconds"
 	cd www && npm ci --no-audit --no-fund
 	touch $@
 

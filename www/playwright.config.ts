@@ -1,9 +1,17 @@
+import { execFileSync } from "node:child_process";
 import { existsSync } from "node:fs";
 import { defineConfig } from "@playwright/test";
 
 /** A Chromium of the system where there is one, otherwise Playwright's own. */
 const chromium = process.env["CHROMIUM"] ?? "/usr/bin/chromium";
-const PORT = Number(process.env["PORT"] ?? 4173);
+/** A free one, so that a demo may still run; all processes of the tests read the same. */
+process.env["PORT"] ??= execFileSync(process.execPath, [
+  "-e",
+  "const server = require('net').createServer().listen(0, () => { console.log(server.address().port); server.close(); })",
+])
+  .toString()
+  .trim();
+const PORT = Number(process.env["PORT"]);
 
 export default defineConfig({
   testDir: "test/e2e",
