@@ -450,7 +450,9 @@ test("only the stages behind a changed parameter run again", async () => {
 test("a link shows the stage, the method's parameters and the selection: a new line of the model, behind the matched ones", async () => {
   const matched = Number(/(\d+) lines/.exec((await stage(page, "lines").textContent()) ?? "")?.[1]);
   // Such a link needs more than its tab: the line comes with the model.
-  await reopen(page, "3D lines", `scene=demo&tab=lines&select=line:${matched}`);
+  const params = new URLSearchParams(new URL(page.url()).hash.slice(1)).get("params") ?? "";
+  const fields = new URLSearchParams({ scene: "demo", tab: "lines", params, select: `line:${matched}` });
+  await reopen(page, "3D lines", fields.toString());
   // What was found before the page was opened again is kept.
   await expect(stage(page, "model")).toHaveAttribute("data-status", "done");
   await waitForStage(page, "refinement");

@@ -109,6 +109,8 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
     await page.getByRole("button", { name: "New project" }).click();
     const listed = page.getByRole("region", { name: "Your last projects" }).getByText("Own files");
     await expect(listed).toBeVisible();
+    // It is no longer the one that a visit begins with.
+    await expect.poll(() => page.evaluate(storedKeys)).not.toContain("present");
     await page.reload();
     await listed.click();
     await showProject(page);

@@ -118,6 +118,7 @@ const DEPEND_ON_SIZE = ["scrollable-region-focusable", "target-size"];
 
 test("by keyboard: screens turn, what is dragged keeps its own keys", async ({ page }) => {
   await page.goto("/lessons.html#lesson=epipolar");
+  await page.locator("h2").click();
   await page.keyboard.press("ArrowRight");
   await expect(page.locator(".screen")).toHaveAttribute("data-screen", "ray");
   const says = page.locator(".says");
