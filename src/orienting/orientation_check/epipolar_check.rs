@@ -1,7 +1,9 @@
 //! How well the images agree under given cameras: interest points against epipolar lines, over
 //! pairs of views.
 
-use nalgebra::{Matrix3, Point2, Vector3};
+use std::collections::BTreeSet;
+
+use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
 use super::epipolar::{MARGIN, MAX_SHIFT, ReducedView, best_match};
 use super::interest_points::interest_points;
@@ -25,7 +27,7 @@ pub(crate) const MIN_AGREEMENT: f64 = 0.25;
 /// Agreement of one view with the others below which it is an outlier, where the others agree.
 const MAX_OUTLIER_AGREEMENT: f64 = 0.03;
 
-/// Most neighbours in the list of views that a view is compared with.
+/// Most neighbours that a view is compared with.
 const MAX_NEIGHBOURS: usize = 5;
 
 /// Of the points of a view, those matched in another one, and those of them matched on the epipolar
@@ -49,16 +51,21 @@ impl EpipolarCheck {
         let factors: Vec<usize> = views.iter().map(factor).collect();
         let grays = parallel::map(views, |i, v| v.gray.reduced(factors[i]));
         let points = parallel::map(&grays, |_, gray| interest_points(gray, MARGIN));
-        let count = views.len();
-        let pairs = (0..count)
-            .flat_map(|i| (i + 1..count.min(i + 1 + MAX_NEIGHBOURS)).map(move |j| (i, j)))
-            .collect();
         Self {
             factors,
             grays,
             points,
-            pairs,
+            pairs: nearest_pairs(&views.iter().map(|v| v.camera.center).collect::<Vec<_>>()),
         }
+    }
+
+    /// Compares views with their neighbours in the list instead, which those of one flight mostly
+    /// overlap with wherever the orientation says they are.
+    pub(super) fn compare_by_list(&mut self) {
+        let count = self.grays.len();
+        self.pairs = (0..count)
+            .flat_map(|i| (i + 1..count.min(i + 1 + MAX_NEIGHBOURS)).map(move |j| (i, j)))
+            .collect();
     }
 
     /// Agreement of the images under these cameras.
@@ -111,6 +118,19 @@ impl EpipolarCheck {
     }
 }
 
+/// Each view with those whose projection centres are nearest to its own.
+fn nearest_pairs(centers: &[Point3<f64>]) -> Vec<(usize, usize)> {
+    let neighbours = |i: usize| {
+        let away = |j: usize| (centers[i] - centers[j]).norm();
+        let mut others: Vec<usize> = (0..centers.len()).filter(|&j| j != i).collect();
+        others.sort_by(|&j, &k| away(j).total_cmp(&away(k)));
+        others.truncate(MAX_NEIGHBOURS);
+        others.into_iter().map(move |j| (i.min(j), i.max(j)))
+    };
+    let pairs: BTreeSet<_> = (0..centers.len()).flat_map(neighbours).collect();
+    pairs.into_iter().collect()
+}
+
 /// The mean viewing direction: planes perpendicular to it approximate the ground, whichever axis is
 /// vertical.
 pub(crate) fn mean_axis(cameras: &[Camera]) -> Vector3<f64> {
@@ -149,5 +169,32 @@ fn reduced_camera(camera: &Camera, factor: usize, gray: &Gray) -> Camera {
         width: gray.width as u32,
         height: gray.height as u32,
         ..camera.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn views_are_compared_with_those_beside_them_whatever_their_order_in_the_list() {
+        // A strip of sixteen stations whose photographs are listed in steps of seven.
+        let station = |view: usize| view * 7 % 16;
+        let centers: Vec<_> = (0..16)
+            .map(|view| Point3::new(20.0 * station(view) as f64, 0.0, 100.0))
+            .collect();
+        let pairs = nearest_pairs(&centers);
+        for (first, second) in (0..16).flat_map(|i| (i + 1..16).map(move |j| (i, j))) {
+            let apart = station(first).abs_diff(station(second));
+            let is_pair = pairs.contains(&(first, second));
+            assert!(
+                is_pair || apart > 2,
+                "{first} and {second}: {apart} stations apart"
+            );
+            assert!(
+                !is_pair || apart <= MAX_NEIGHBOURS,
+                "{first}, {second}: {apart}"
+            );
+        }
     }
 }

@@ -60,9 +60,14 @@ pub fn check_orientation(views: &[CheckedView]) -> OrientationCheck {
     if views.iter().any(is_small) {
         return CheckFinding::Unknown(Agreement::default()).into();
     }
-    let check = EpipolarCheck::new(views);
+    let mut check = EpipolarCheck::new(views);
     let stated: Vec<Camera> = views.iter().map(|v| v.camera.clone()).collect();
-    let counts = check.counts(&stated, &check.pairs);
+    let mut counts = check.counts(&stated, &check.pairs);
+    if total_agreement(&counts).score < MIN_AGREEMENT {
+        // Where the orientation may be wrong it does not say which views overlap.
+        check.compare_by_list();
+        counts = check.counts(&stated, &check.pairs);
+    }
     let before = total_agreement(&counts);
     let outliers = check.outlier_views(&counts);
     let coarse = match before.score >= MIN_AGREEMENT {
