@@ -5,6 +5,7 @@ use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
 use crate::roofs::buildings::{RefinementTrace, refine_buildings};
+use crate::roofs::facets::CompetingPlanes;
 use crate::roofs::model::RoofModel;
 
 /// The roof model.
@@ -19,13 +20,15 @@ impl StageDefinition for Refinement {
     const TITLE: &'static str = "Refinement";
     const SECTION: &'static str = "B99 2";
     const READS: &'static [&'static str] = &["roof.refine", "roof.border_nats_per_m"];
-    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground, Stage::Facets];
+    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground, Stage::Groups, Stage::Facets];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let lines = &required(&before.lines).value;
         let ground = required(&before.ground);
+        let competing = required(&before.groups).value.as_deref();
+        let cloud = competing.and_then(CompetingPlanes::cloud);
         let facets = &required(&before.facets).value;
-        Ok(refine_buildings(scene, lines, facets, ground, params).into())
+        Ok(refine_buildings(scene, lines, facets, (ground, cloud), params).into())
     }
 
     fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {

@@ -30,6 +30,7 @@ pub use refine::{
     BuildingRefinement, RefineRejection, RelationKind, RoofGap, SideKind, Statement,
     TestedRelation, adjust_to_statements, cut_back_at_gaps, refine_roofs,
 };
-pub use refinement::{RefinementTrace, UnrefinedFacets, refine_buildings};
+pub(crate) use refinement::refine_buildings;
+pub use refinement::{RefinementTrace, UnrefinedFacets};
 pub(crate) use uncovered::ASKED_PROBABILITY;
 pub use uncovered::{UncoveredRoof, WhyUncovered, uncovered_roofs};

@@ -3,8 +3,8 @@
 //! The edges that bound a flat roof are often those of a parapet that stands above it. Matched
 //! lines and the adjustment put the plane there, and vents and machines rise above the roof as
 //! well. Inside, the views show at which height most of it lies and what stands on it
-//! ([`ClutterTable`]). A facet that meets no other one is moved down there where that is likelier.
-//! The parapet itself is no part of the model: walls end at the roof.
+//! ([`ClutterTable`]), and so do the points of a cloud. A facet that meets no other one is moved down
+//! there where that is likelier. The parapet itself is no part of the model: walls end at the roof.
 
 use nalgebra::Point3;
 use serde::Serialize;
@@ -14,7 +14,7 @@ use crate::base::geometry::Plane;
 use crate::base::ids::ViewId;
 use crate::orienting::scene::Scene;
 use crate::planes::photoconsistency::{MAX_VIEWS, PlanGrid, WINDOW, consistency_map_behind};
-use crate::roofs::facets::{PartVisibility, largest_slope, windows_inside};
+use crate::roofs::facets::{CloudEvidence, PartVisibility, largest_slope, windows_inside};
 use crate::roofs::model::{Facet, Occluders};
 
 /// A roof lies at most so far below its edges, metres. Assumption: the height of a balustrade.
@@ -36,7 +36,11 @@ pub struct Parapet {
 }
 
 /// Moves facets that lie below their parapets down to the height of the roof.
-pub(super) fn below_parapets(scene: &Scene, facets: &[Facet]) -> (Vec<Facet>, Vec<Parapet>) {
+pub(super) fn below_parapets(
+    scene: &Scene,
+    facets: &[Facet],
+    cloud: Option<&CloudEvidence>,
+) -> (Vec<Facet>, Vec<Parapet>) {
     let Some(middle) = facets.first().and_then(|f| f.outer.first()) else {
         return (facets.to_vec(), Vec::new());
     };
@@ -53,7 +57,8 @@ pub(super) fn below_parapets(scene: &Scene, facets: &[Facet]) -> (Vec<Facet>, Ve
         if others.iter().any(|other| meet(facet, other)) {
             return None;
         }
-        let (height_m, nats) = parapet_of(&reduced, facet, step, &Occluders::new(&others))?;
+        let occluders = Occluders::new(&others);
+        let (height_m, nats) = parapet_of(&reduced, facet, step, &occluders, cloud)?;
         Some(Parapet {
             facet: i,
             height_m,
@@ -89,6 +94,7 @@ fn parapet_of(
     facet: &Facet,
     step: f64,
     occluders: &Occluders,
+    cloud: Option<&CloudEvidence>,
 ) -> Option<(f64, f64)> {
     let table = ClutterTable::fitted();
     let [min, max] = facet.plan_bounds();
@@ -110,10 +116,10 @@ fn parapet_of(
     let lowest = (HIGHEST_M / apart).ceil() as usize;
     let reach = (table.highest_m / apart).ceil() as usize;
     // The likelihoods of the heights by window, from the lowest to the highest.
-    let heights = (0..=lowest + reach).map(|k| (k as f64 - lowest as f64) * apart);
-    let by_height: Vec<Vec<f64>> = heights
-        .map(|z| {
-            let map = consistency_map_behind(scene, &raised(&facet.plane, z), &grid, &hidden);
+    let plane_at = |k: usize| raised(&facet.plane, (k as f64 - lowest as f64) * apart);
+    let by_height: Vec<Vec<f64>> = (0..=lowest + reach)
+        .map(|k| {
+            let map = consistency_map_behind(scene, &plane_at(k), &grid, &hidden);
             let nats = |&k: &usize| table.nats_of_height(map.correlation(k), views);
             inside.iter().map(nats).collect()
         })
@@ -134,6 +140,11 @@ fn parapet_of(
     }
     // Windows side by side are independent, others share cells.
     said.iter_mut().for_each(|s| *s /= (WINDOW * WINDOW) as f64);
+    if let Some(cloud) = cloud {
+        for (k, said) in said.iter_mut().enumerate() {
+            *said += cloud.prefers(facet, &plane_at(k), &facet.plane);
+        }
+    }
     let best = (0..lowest).max_by(|&i, &j| said[i].total_cmp(&said[j]).then(i.cmp(&j)))?;
     let nats = said[best] - said[lowest] + table.prior_of_rim(lowest);
     let below = said[best.saturating_sub(1)];
@@ -188,12 +199,12 @@ mod tests {
             textured(Plane::level(5.4), parapet),
             level_ground(),
         ]);
-        let (facets, parapets) = below_parapets(&rimmed, &[facet(5.4)]);
+        let (facets, parapets) = below_parapets(&rimmed, &[facet(5.4)], None);
         assert_eq!(parapets.len(), 1);
         assert!((parapets[0].height_m - 0.4).abs() < 0.05, "{parapets:?}");
         assert!((facets[0].plane.z_at(0.0, 0.0) - 5.0).abs() < 0.05);
         assert!(facets[0].outer.iter().all(|p| (p.z - 5.0).abs() < 0.05));
-        let (facets, parapets) = below_parapets(&rimmed, &[facet(5.0)]);
+        let (facets, parapets) = below_parapets(&rimmed, &[facet(5.0)], None);
         assert_eq!((facets, parapets), (vec![facet(5.0)], Vec::new()));
     }
 

@@ -11,6 +11,7 @@ use crate::base::params::Params;
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
 use crate::planes::terrain::Ground;
+use crate::roofs::facets::CloudEvidence;
 use crate::roofs::model::{Facet, RoofModel};
 use crate::roofs::solids::{SolidTrace, close_above};
 
@@ -43,11 +44,11 @@ pub struct UnrefinedFacets {
 
 /// Cuts facets back at gaps, refines the buildings, closes them again, and weighs the lines in
 /// them.
-pub fn refine_buildings(
+pub(crate) fn refine_buildings(
     scene: &Scene,
     lines: &[Line3d],
     model: &RoofModel,
-    ground: &Ground,
+    (ground, cloud): (&Ground, Option<&CloudEvidence>),
     params: &Params,
 ) -> (RoofModel, RefinementTrace) {
     let (separated, gaps) = cut_back_at_gaps(scene, model, &params.roof);
@@ -56,7 +57,7 @@ pub fn refine_buildings(
     reached(0.2);
     let (refined, buildings) = refine_roofs(scene, lines, &delineated, &params.roof);
     reached(0.7);
-    let (lowered, parapets) = below_parapets(scene, &refined);
+    let (lowered, parapets) = below_parapets(scene, &refined, cloud);
     let (model, closed) = close_above(&lowered, ground);
     let unrefined = UnrefinedFacets {
         facets: delineated.facets,

@@ -37,6 +37,11 @@ pub struct CompetingPlanes {
 }
 
 impl CompetingPlanes {
+    /// The point cloud that belongs here, as evidence.
+    pub(crate) fn cloud(&self) -> Option<&CloudEvidence> {
+        self.cloud.as_ref()
+    }
+
     /// What the labelling of the cells minimises.
     pub(super) fn energy(
         &self,

@@ -45,6 +45,7 @@ pub(crate) use compete::FINEST_CELL_M;
 pub use compete::{GroupingTrace, competing_planes};
 pub use competing_planes::CompetingPlanes;
 pub use input::{FacetInput, PlacedCloud};
+pub(crate) use point_cloud::CloudEvidence;
 pub use reconstruct::{FacetTrace, RoofTrace, reconstruct_roofs};
 pub use register::{FootprintFinding, FootprintVerdict, RegisterTrace};
 pub use verification::{FacetRejection, RejectedFacet};

@@ -50,7 +50,7 @@ const LEAST_SIGMA_M: f64 = 1e-3;
 
 /// A point cloud over the plan of a scene.
 #[derive(Clone, Debug)]
-pub(super) struct CloudEvidence {
+pub(crate) struct CloudEvidence {
     cloud: Arc<PlacedCloud>,
     grid: PlanGrid,
     /// The point nearest to each sample; `u32::MAX` for none.
@@ -78,6 +78,14 @@ pub(super) struct OfPlane<'a> {
     plane: Plane,
     /// Standard deviation of a point's height above it, metres.
     sigma_m: f64,
+}
+
+/// What points say of a plane.
+struct Said {
+    /// Of a roof there against none, nats.
+    nats: f64,
+    /// Share of the points that speak for it; a half where there are none.
+    on_it: f64,
 }
 
 impl CloudEvidence {
@@ -145,7 +153,29 @@ impl CloudEvidence {
 
     /// What it says of a facet.
     pub(super) fn of_facet(&self, facet: &Facet) -> EvidenceTerm {
-        let of_plane = self.of(&facet.plane);
+        let said = self.said(facet, &facet.plane);
+        let e = self.cloud.params.in_error;
+        // Beyond that both ratios are at their bounds.
+        let ratio = exp(said.nats.clamp(-LARGEST_ODDS_NATS, LARGEST_ODDS_NATS));
+        let older = e * larger(ratio, 1.0);
+        let ratio = ((1.0 - e) * ratio + older) / (1.0 - e + older);
+        EvidenceTerm {
+            feature: POINT_CLOUD,
+            value: said.on_it,
+            nats: self.weighed(ratio),
+        }
+    }
+
+    /// How much likelier the points over a facet are on one plane than on another, nats.
+    pub(crate) fn prefers(&self, facet: &Facet, plane: &Plane, to: &Plane) -> f64 {
+        let [said, instead] = [plane, to].map(|plane| self.said(facet, plane).nats);
+        let odds = (said - instead).clamp(-LARGEST_ODDS_NATS, LARGEST_ODDS_NATS);
+        self.weighed(exp(odds))
+    }
+
+    /// What the points over a facet say of a plane.
+    fn said(&self, facet: &Facet, plane: &Plane) -> Said {
+        let of_plane = self.of(plane);
         let PlanGrid { origin, step, .. } = self.grid;
         let [low, high] = facet.plan_bounds();
         let corner = |p: Point2<f64>| {
@@ -167,15 +197,9 @@ impl CloudEvidence {
                 on_it += if ratio > 1.0 { 1.0 } else { 0.0 };
             }
         }
-        let e = self.cloud.params.in_error;
-        // Beyond that both ratios are at their bounds.
-        let ratio = exp(nats.clamp(-LARGEST_ODDS_NATS, LARGEST_ODDS_NATS));
-        let older = e * larger(ratio, 1.0);
-        let ratio = ((1.0 - e) * ratio + older) / (1.0 - e + older);
-        EvidenceTerm {
-            feature: POINT_CLOUD,
-            value: if told > 0.0 { on_it / told } else { 0.5 },
-            nats: self.weighed(ratio),
+        Said {
+            nats,
+            on_it: if told > 0.0 { on_it / told } else { 0.5 },
         }
     }
 
