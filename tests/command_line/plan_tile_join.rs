@@ -193,7 +193,6 @@ fn parts_of_many_processes_are_the_model_of_one() {
     };
     let mut whole = whole_of("120");
     let mut joined = reference().model.clone();
-    joined.remove("model.city.jsonl").unwrap();
     let [one, other] = [&mut whole, &mut joined].map(|f| report(&f.remove("report.json").unwrap()));
     assert_eq!(one, other);
     assert!(one["buildings"] == 1 && one["tiles"].as_array().unwrap().len() == 4);
