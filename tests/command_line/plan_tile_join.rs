@@ -277,8 +277,11 @@ fn every_line_of_the_sequence_is_a_valid_feature() {
     };
     is_sound(&validator, first);
     let model = &reference().model;
-    let [of_lines, of_whole] = ["model.city.jsonl", "model.city.json"]
-        .map(|name| ridgeline::results::export::report_files(&model[name], &[]).unwrap());
+    let [of_lines, of_whole] = ["model.city.jsonl", "model.city.json"].map(|name| {
+        ridgeline::results::export::ReportedModel::read(&model[name])
+            .unwrap()
+            .files(&[])
+    });
     assert!(of_lines == of_whole, "the reports differ");
     let whole: Value = serde_json::from_slice(&reference().model["model.city.json"]).unwrap();
     let head: Value = serde_json::from_str(first).unwrap();

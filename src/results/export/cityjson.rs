@@ -160,7 +160,7 @@ impl Shared {
 }
 
 /// The corners in whole steps.
-fn whole_corners(solid: &Solid) -> impl Iterator<Item = [i64; 3]> {
+pub(super) fn whole_corners(solid: &Solid) -> impl Iterator<Item = [i64; 3]> {
     let whole = |c: f64| (c / WRITTEN_STEP_M).round() as i64;
     (solid.vertices.iter()).map(move |p| [whole(p.x), whole(p.y), whole(p.z)])
 }

@@ -45,7 +45,7 @@ pub use glb::{glb, glb_of};
 pub use json::{half_planes_json, lines_json, segments_json};
 pub use mesh::{mtl, obj, ply};
 pub use plans::{dxf, lines_csv};
-pub use report::report_files;
+pub use report::ReportedModel;
 pub use tileset::{SquareContent, TILESET_FILE, tileset_of_squares};
 
 use image::codecs::jpeg::JpegEncoder;
@@ -97,8 +97,7 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
     let atlas = atlas_jpeg(textured, params.jpeg_quality);
     let measured = Measured::new(scene, model);
     let city = cityjson::city_json(scene, (model, walls), &measured, textured);
-    let report =
-        report_files(&city, &SetbackRule::built_in()).expect("what was just written reads");
+    let report = ReportedModel::of_measured(scene, (model, walls), &measured);
     let mut files: Vec<(String, Vec<u8>)> = [
         ("model.city.json", city),
         (
@@ -127,7 +126,7 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
     ]
     .map(|(name, bytes)| (name.to_owned(), bytes))
     .into();
-    files.extend(report);
+    files.extend(report.files(&SetbackRule::built_in()));
     files
 }
 
