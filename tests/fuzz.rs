@@ -25,7 +25,7 @@ use ridgeline::orienting::scene_loader::{
 };
 use ridgeline::orienting::structure_from_motion::{GeoList, GroundControl, PhotoMetadata};
 use ridgeline::photographs::raster::{image_header, load_image, load_window};
-use ridgeline::results::export::report_files;
+use ridgeline::results::export::ReportedModel;
 use ridgeline::results::roof_report::SetbackRule;
 
 /// Longest time that one input may take: machines may be busy, but nothing hangs.
@@ -393,7 +393,8 @@ fn read_known(files: &[InputFile]) {
     };
     let origin = nalgebra::Vector3::new(432_100.0, 5_412_300.0, 0.0);
     for file in files {
-        let _ = report_files(&file.bytes, &SetbackRule::built_in());
+        let read = ReportedModel::read(&file.bytes);
+        let _ = read.map(|model| model.files(&SetbackRule::built_in()));
         let terrain = Terrain::read(file, None, &system, origin, 0.3);
         if let Ok(terrain) = &terrain {
             let z = terrain.z_at(3.0, -2.0);

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use ridgeline::results::export::report_files;
+use ridgeline::results::export::ReportedModel;
 use ridgeline::results::roof_report::SetbackRule;
 
 use super::args::ReportArgs;
@@ -33,8 +33,9 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
         }
         None => SetbackRule::built_in(),
     };
-    let written = report_files(&bytes, &setbacks)
-        .map_err(|problem| Failure::Input(format!("{}: {problem}", path.display())))?;
+    let read = ReportedModel::read(&bytes);
+    let read = read.map_err(|problem| Failure::Input(format!("{}: {problem}", path.display())))?;
+    let written = read.files(&setbacks);
     let beside = path.parent().unwrap_or(Path::new("."));
     let out = args.out.as_deref().unwrap_or(beside);
     let failure = |e| Failure::Output(format!("{}: cannot be made: {e}", out.display()));

@@ -49,7 +49,7 @@ use crate::planes::half_planes::HalfPlane;
 use crate::planes::objectspace::{image_segments, world_lines};
 use crate::planes::terrain::Ground;
 use crate::results::export;
-use crate::results::export::export_all;
+use crate::results::export::{ReportedModel, export_all};
 use crate::results::texture::TexturedModel;
 use crate::roofs::buildings::{OtherGround, other_ground};
 use crate::roofs::model::{BuildingWalls, RoofModel};
@@ -338,6 +338,13 @@ impl Run {
         let report = report::report(&self.scene, &self.params, &self.summaries, beside, seconds);
         files.push(("report.json".into(), report));
         files
+    }
+
+    /// The model as the roof report states it, for another one of it; `None` before the last stage
+    /// has run.
+    pub fn reported(&self) -> Option<ReportedModel> {
+        let Outputs { model, walls, .. } = self.outputs()?;
+        Some(ReportedModel::of(&self.scene, model, walls))
     }
 
     /// What goes into the files; `None` before the last stage has run.

@@ -30,6 +30,7 @@ use crate::orienting::scene_loader::{
 };
 use crate::pipeline::{Run, Stage, counted};
 use crate::planes::terrain::Ground;
+use crate::results::export::ReportedModel;
 use crate::results::texture::texture_model;
 use crate::roofs::walls::place_walls_of;
 
@@ -263,14 +264,15 @@ impl Area {
         Ok(Some((index, self.reports.entry(index).or_insert(report))))
     }
 
-    /// One model of all tiles, as files, whatever the order in which they were done; the first
-    /// error where no tile could be read. `seconds` of each tile go into `report.json` and may be
-    /// empty.
-    pub fn finish(mut self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
+    /// One model of all tiles, as files, and as the roof report states it, whatever the order in
+    /// which they were done; the first error where no tile could be read. `seconds` of each tile go
+    /// into `report.json` and may be empty.
+    pub fn finish(mut self, seconds: &[f64]) -> Result<(Vec<(String, Vec<u8>)>, ReportedModel)> {
         let joined = self.join()?;
         let reports: Vec<TileReport> = self.reports.into_values().collect();
         let done = (&self.sites[..], &reports[..]);
-        Ok(model_files(&joined, &self.params, done, seconds))
+        let reported = ReportedModel::of(&joined.scene, &joined.model, &joined.walls);
+        Ok((model_files(&joined, &self.params, done, seconds), reported))
     }
 
     /// The same with 3D Tiles of a file for each square, so that a viewer fetches what it shows.

@@ -177,7 +177,7 @@ mod tests {
             while let Some((tile, _)) = area.step(&mut files, &silent()).unwrap() {
                 tiles.push(tile);
             }
-            (tiles, area.finish(&[]).unwrap())
+            (tiles, area.finish(&[]).unwrap().0)
         };
         let ((tiles, expected), (turned, found)) = (model(false), model(true));
         assert!(tiles.len() > 1 && tiles.iter().eq(turned.iter().rev()));

@@ -17,7 +17,6 @@ use serde::{Deserialize, Serialize};
 
 use super::area::{Area, files_in_squares, join_cells, work_off};
 use super::division::Division;
-use super::join::Joined;
 use super::look::Site;
 use super::part_file::{PartKey, TileOutcome};
 use super::seen_ground::SeenGround;
@@ -30,7 +29,6 @@ use crate::base::params::Params;
 use crate::orienting::orientation::{BLOCK_BYTES, FileSource, InputFile, Needed};
 use crate::orienting::scene_loader::{LoadOptions, whole_views};
 use crate::photographs::raster::image_format;
-use crate::results::export::city_json_seq;
 
 /// Where the files of a block came from, as it was stated: to find them again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -363,18 +361,8 @@ impl BlockPlan {
             });
         }
         let joined = join_cells(whole, &mut parts);
-        let mut files =
-            files_in_squares(&joined, &parts, &self.params, (&self.sites, &reports), &[]);
-        let Joined {
-            scene,
-            model,
-            walls,
-            textured,
-            ..
-        } = &joined;
-        let features = city_json_seq(scene, (model, walls), textured);
-        files.push(("model.city.jsonl".to_owned(), features));
-        Ok(files)
+        let found = (&self.sites[..], &reports[..]);
+        Ok(files_in_squares(&joined, &parts, &self.params, found, &[]))
     }
 
     fn planned(&self, tile: u32) -> Result<&PlannedTile> {

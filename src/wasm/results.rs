@@ -14,7 +14,6 @@ use crate::planes::adjacency::{AdjacencyTrace, CornerPlane};
 use crate::planes::coplanar::{CoplanarSet, CoplanarTrace};
 use crate::planes::dense::{DensePlane, DenseTrace};
 use crate::planes::objectspace::{Window, WindowTrace};
-use crate::results::export::report_files;
 use crate::results::roof_report::SetbackRule;
 use crate::results::texture::texture_ground;
 
@@ -265,9 +264,14 @@ impl Session {
     pub fn report_with(&mut self, setbacks: &str) -> Result<(), JsValue> {
         let refused = |problem: String| named_error("InputError", &format!("the file {problem}"));
         let rules = SetbackRule::with(setbacks).map_err(refused)?;
-        let city = self.export_file("model.city.json")?;
-        let written = report_files(&city, &rules).map_err(refused)?;
-        let outputs = self.outputs.as_mut().expect("they were just asked for");
+        self.outputs()?;
+        let reported = match &self.run {
+            Some(run) => run.reported(),
+            None => self.joined.clone(),
+        };
+        let not_run = || named_error("RangeError", "there is no report: run all stages first");
+        let written = reported.ok_or_else(not_run)?.files(&rules);
+        let outputs = self.outputs.get_or_insert_default();
         outputs.retain(|(name, _)| written.iter().all(|(new, _)| new != name));
         outputs.extend(written);
         Ok(())

@@ -15,6 +15,7 @@ use crate::orienting::scene_loader::{
 };
 use crate::pipeline::{PackedView, Run, Stage};
 use crate::planes::half_planes::PointsOfInterest;
+use crate::results::export::ReportedModel;
 use crate::tiles::Area;
 
 /// Files, parameters and the reconstruction made of them.
@@ -37,6 +38,8 @@ pub struct Session {
     pub(crate) merged: MergedShards,
     /// Written on first request after the last stage.
     pub(crate) outputs: Option<Vec<(String, Vec<u8>)>>,
+    /// The model of tiles that were joined, for another report of it.
+    pub(crate) joined: Option<ReportedModel>,
     /// Points of interest, found on first request for a figure.
     pub(crate) points: Option<Vec<PointsOfInterest>>,
 }
@@ -212,6 +215,7 @@ impl Session {
         self.area = None;
         self.run = None;
         self.outputs = None;
+        self.joined = None;
         self.points = None;
     }
 

@@ -201,7 +201,8 @@ impl Session {
     #[wasm_bindgen(js_name = joinTiles)]
     pub fn join_tiles(&mut self) -> Result<(), JsValue> {
         let area = self.area.take().ok_or_else(not_planned)?;
-        self.outputs = Some(area.finish(&[]).map_err(|e| input_error(&e))?);
+        let (files, reported) = area.finish(&[]).map_err(|e| input_error(&e))?;
+        (self.outputs, self.joined) = (Some(files), Some(reported));
         Ok(())
     }
 

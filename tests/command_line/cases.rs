@@ -13,7 +13,7 @@ use ridgeline::orienting::scene_loader::{LoadOptions, load_scene, unpack};
 use ridgeline::orienting::structure_from_motion::{
     OrientChain, OrientOptions, Oriented, ReadPhoto,
 };
-use ridgeline::results::export::report_files;
+use ridgeline::results::export::ReportedModel;
 
 use crate::common::zipped;
 
@@ -208,7 +208,7 @@ fn scenes_have_their_right_values() {
 fn a_report_of_a_model_in_feet_is_in_metres() {
     let Some(cases) = cases() else { return };
     let model = files(&case(&cases, "48/model_feet.city.json")).remove(0).1;
-    let written = report_files(&model, &[]).unwrap();
+    let written = ReportedModel::read(&model).unwrap().files(&[]);
     let table = &written
         .iter()
         .find(|(name, _)| name == "buildings.csv")

@@ -193,7 +193,6 @@ fn parts_of_many_processes_are_the_model_of_one() {
     };
     let mut whole = whole_of("120");
     let mut joined = reference().model.clone();
-    joined.remove("model.city.jsonl").unwrap();
     let [one, other] = [&mut whole, &mut joined].map(|f| report(&f.remove("report.json").unwrap()));
     assert_eq!(one, other);
     assert!(one["buildings"] == 1 && one["tiles"].as_array().unwrap().len() == 4);
@@ -278,8 +277,11 @@ fn every_line_of_the_sequence_is_a_valid_feature() {
     };
     is_sound(&validator, first);
     let model = &reference().model;
-    let [of_lines, of_whole] = ["model.city.jsonl", "model.city.json"]
-        .map(|name| ridgeline::results::export::report_files(&model[name], &[]).unwrap());
+    let [of_lines, of_whole] = ["model.city.jsonl", "model.city.json"].map(|name| {
+        ridgeline::results::export::ReportedModel::read(&model[name])
+            .unwrap()
+            .files(&[])
+    });
     assert!(of_lines == of_whole, "the reports differ");
     let whole: Value = serde_json::from_slice(&reference().model["model.city.json"]).unwrap();
     let head: Value = serde_json::from_str(first).unwrap();

@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 use crate::common::{names_in, synthetic_files, zipped};
 
 /// What a run writes.
-const OUTPUTS: [&str; 22] = [
+const OUTPUTS: [&str; 24] = [
     "buildings.csv",
     "edges.csv",
     "edges.geojson",
@@ -20,8 +20,10 @@ const OUTPUTS: [&str; 22] = [
     "lines.csv",
     "lines.json",
     "model.city.json",
+    "model.city.jsonl",
     "model.dxf",
     "model.glb",
+    "model.ifc",
     "model.mtl",
     "model.obj",
     "model.ply",

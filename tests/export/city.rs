@@ -124,7 +124,13 @@ fn a_known_reference_system_is_written() {
         plan["crs"]["properties"]["name"],
         "urn:ogc:def:crs:EPSG::25832"
     );
-    for name in ["model.obj", "model.ply", "model.dxf", "model.glb"] {
+    for name in [
+        "model.obj",
+        "model.ply",
+        "model.dxf",
+        "model.glb",
+        "model.ifc",
+    ] {
         assert!(text(name).contains("EPSG:25832"), "{name}");
     }
     dxf::Drawing::load(&mut &files["model.dxf"][..]).unwrap();

@@ -6,6 +6,7 @@
 mod broken_solids;
 mod city;
 mod glb;
+mod ifc;
 mod meshes;
 mod planted;
 mod report;

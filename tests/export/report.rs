@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
-use ridgeline::results::export::report_files;
+use ridgeline::orienting::orientation::Anchor;
+use ridgeline::results::export::ReportedModel;
 use ridgeline::results::roof_report::SetbackRule;
 use ridgeline::roofs::model::{
     CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
 };
 use serde_json::Value;
 
-use crate::planted::{ORIGIN, files_of, planted_models, scene};
+use crate::planted::{ORIGIN, files_of, files_of_walled, planted_models, scene};
+use crate::walls::walls_at;
 
 /// The models, with planted standard deviations.
 pub fn known_models() -> Vec<(&'static str, RoofModel, f64)> {
@@ -63,9 +65,29 @@ fn number(row: &BTreeMap<String, String>, name: &str) -> f64 {
 
 #[test]
 fn a_folder_makes_the_same_report_again() {
-    for (name, model, _) in known_models() {
-        let files = files_of(&scene(), &model);
-        let again = report_files(&files["model.city.json"], &SetbackRule::built_in()).unwrap();
+    let anchor = Anchor {
+        lon_deg: 8.123_456_789,
+        lat_deg: 48.987_654_321,
+        height_m: 312.5,
+    };
+    let places = [(None, None), (Some(25832), None), (None, Some(anchor))];
+    for ((name, mut model, _), (epsg, anchor)) in known_models().into_iter().zip(places) {
+        // Numbers of more digits than a file has, and one that it cannot have.
+        model.buildings[0].ground_z = 0.123_456;
+        let facet = &mut model.facets[0];
+        facet.probability = 0.876_543_21;
+        let known = facet.uncertainty.as_mut().unwrap();
+        (known.slope_deg, known.sides[0].sigma_m) = (0.123_456, f64::NAN);
+        model.facets[1].uncertainty.as_mut().unwrap().height_m = f64::INFINITY;
+        let mut scene = scene();
+        scene.survey.epsg = epsg;
+        if anchor.is_some() {
+            (scene.survey.anchor, scene.origin) = (anchor, Vector3::zeros());
+        }
+        let walls = walls_at(&model, |_| 0.5);
+        let files = files_of_walled(&scene, &model, &[walls]);
+        let again = ReportedModel::read(&files["model.city.json"]).unwrap();
+        let again = again.files(&SetbackRule::built_in());
         assert_eq!(again.len(), 5);
         for (file, bytes) in again {
             assert!(files[&file] == bytes, "{name}: {file}");
@@ -227,7 +249,7 @@ fn a_file_that_is_no_model_is_refused_with_the_reason() {
     let damaged = |damage: &dyn Fn(&mut Value)| {
         let mut file = good.clone();
         damage(&mut file);
-        report_files(&serde_json::to_vec(&file).unwrap(), &[])
+        ReportedModel::read(&serde_json::to_vec(&file).unwrap())
     };
     assert!(damaged(&|_| {}).is_ok());
     for (damage, reason) in [
@@ -269,7 +291,7 @@ fn a_file_that_is_no_model_is_refused_with_the_reason() {
         let found = damaged(damage).unwrap_err();
         assert!(found.contains(reason), "{found} instead of {reason}");
     }
-    assert!(report_files(b"{", &[]).unwrap_err().contains("no JSON"));
+    assert!(ReportedModel::read(b"{").unwrap_err().contains("no JSON"));
     // What others leave out is not needed.
     let bare = damaged(&|f| {
         f["CityObjects"]["building-0"]["attributes"] = Value::Null;
@@ -279,7 +301,7 @@ fn a_file_that_is_no_model_is_refused_with_the_reason() {
             *surface = serde_json::json!({ "type": kind });
         }
     });
-    let bare: BTreeMap<_, _> = bare.unwrap().into_iter().collect();
+    let bare: BTreeMap<_, _> = bare.unwrap().files(&[]).into_iter().collect();
     let facet = &rows(&bare["facets.csv"])[0];
     assert_eq!(
         (&facet["area_sigma_m2"][..], &facet["photographs"][..]),

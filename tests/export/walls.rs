@@ -28,7 +28,7 @@ fn sides_and_solid(
 }
 
 /// The walls of the only building at these depths, the odd ones seen.
-fn walls_at(model: &RoofModel, depth: impl Fn(&Side) -> f64) -> BuildingWalls {
+pub fn walls_at(model: &RoofModel, depth: impl Fn(&Side) -> f64) -> BuildingWalls {
     let (sides, solid) = sides_and_solid(model, 0, &depth);
     let wall = |(i, side): (usize, &Side)| Wall {
         side: Segment3::new(side.start(), side.end()),

@@ -56,18 +56,18 @@ pub(super) fn city_json(
 
 /// The model as a sequence of CityJSON features, one a line: first what they share, then each
 /// building with its own corners and texture coordinates. Programs read it building by building.
-pub fn city_json_seq(
+pub(super) fn city_json_seq(
     scene: &Scene,
     (model, walls): (&RoofModel, &[BuildingWalls]),
+    measured: &Measured,
     textured: &TexturedModel,
 ) -> Vec<u8> {
-    let measured = Measured::new(scene, model);
     let mut vertices = Vec::new();
     let mut features = Vec::new();
     for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
         let id = format!("building-{i}");
         let mut own = Shared::default();
-        let of = (model, &measured);
+        let of = (model, measured);
         let mut object = building_object(scene, of, (i, building), textures, &mut own);
         if let Some(walls) = walls.get(i) {
             add_walls(&mut object, walls, &mut own, 0);
@@ -160,7 +160,7 @@ impl Shared {
 }
 
 /// The corners in whole steps.
-fn whole_corners(solid: &Solid) -> impl Iterator<Item = [i64; 3]> {
+pub(super) fn whole_corners(solid: &Solid) -> impl Iterator<Item = [i64; 3]> {
     let whole = |c: f64| (c / WRITTEN_STEP_M).round() as i64;
     (solid.vertices.iter()).map(move |p| [whole(p.x), whole(p.y), whole(p.z)])
 }

@@ -3,12 +3,13 @@
 //! | file | what |
 //! |---|---|
 //! | `model.city.json` | CityJSON 2.0, world frame of the input; names the atlas file |
-//! | `model.city.jsonl` | CityJSONSeq, a building a line (`tiles::BlockPlan` only) |
+//! | `model.city.jsonl` | CityJSONSeq: the same, a building a line |
 //! | `model_atlas.jpg` | the texture atlas of `model.city.json` |
 //! | `model.glb` | glTF 2.0, Y up, near-origin coordinates, the atlas inside |
 //! | `tileset.json` | 3D Tiles 1.1, places `model.glb` on the Earth where that is known |
 //! | `model.obj`, `model.mtl` | triangles and the same atlas, world frame |
 //! | `model.ply` | triangles, and the 3D lines as edges |
+//! | `model.ifc` | IFC4 for building information models |
 //! | `model.dxf` | 3DFACE and LINE for drawing programs |
 //! | `footprints.geojson` | outlines on the ground, with heights |
 //! | `facets.geojson`, `edges.geojson` | the roofs in plan, with areas, slopes, lengths |
@@ -29,6 +30,7 @@ mod evidence;
 mod format;
 mod geojson;
 mod glb;
+mod ifc;
 mod json;
 mod measured;
 mod mesh;
@@ -37,14 +39,13 @@ mod report;
 mod tileset;
 mod walls;
 
-pub use cityjson::city_json_seq;
 pub use evidence::evidence_json;
 pub use format::{ATLAS_FILE, MATERIAL_FILE};
 pub use glb::{glb, glb_of};
 pub use json::{half_planes_json, lines_json, segments_json};
 pub use mesh::{mtl, obj, ply};
 pub use plans::{dxf, lines_csv};
-pub use report::report_files;
+pub use report::ReportedModel;
 pub use tileset::{SquareContent, TILESET_FILE, tileset_of_squares};
 
 use image::codecs::jpeg::JpegEncoder;
@@ -96,16 +97,20 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
     let atlas = atlas_jpeg(textured, params.jpeg_quality);
     let measured = Measured::new(scene, model);
     let city = cityjson::city_json(scene, (model, walls), &measured, textured);
-    let report =
-        report_files(&city, &SetbackRule::built_in()).expect("what was just written reads");
+    let report = ReportedModel::of_measured(scene, (model, walls), &measured);
     let mut files: Vec<(String, Vec<u8>)> = [
         ("model.city.json", city),
+        (
+            "model.city.jsonl",
+            cityjson::city_json_seq(scene, (model, walls), &measured, textured),
+        ),
         ("model.glb", glb(scene, model, textured, &atlas)),
         (ATLAS_FILE, atlas),
         (TILESET_FILE, tileset::tileset(scene, model, "model.glb")),
         ("model.obj", obj(scene, model, textured)),
         (MATERIAL_FILE, mtl()),
         ("model.ply", ply(scene, model, lines)),
+        ("model.ifc", ifc::ifc(scene, (model, walls), &measured)),
         ("model.dxf", dxf(scene, model, lines)),
         ("footprints.geojson", geojson::footprints(scene, model)),
         ("facets.geojson", geojson::facets(scene, model, &measured)),
@@ -121,7 +126,7 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
     ]
     .map(|(name, bytes)| (name.to_owned(), bytes))
     .into();
-    files.extend(report);
+    files.extend(report.files(&SetbackRule::built_in()));
     files
 }
 

@@ -104,6 +104,13 @@ test("one click turns the demo scene into a textured model that can be downloade
     expect(bytes.readUInt32LE(8)).toBe(bytes.length);
   });
 
+  await test.step("the IFC has a roof and its faces", async () => {
+    const text = (await save(page, "model.ifc")).toString();
+    expect(text).toContain("FILE_SCHEMA(('IFC4'));");
+    expect(text.match(/=IFCROOF\(/g)?.length).toBeGreaterThan(0);
+    expect(text.match(/,\.ROOF\.\);/g)?.length).toBeGreaterThan(0);
+  });
+
   await test.step("the CityJSON holds buildings", async () => {
     const city = JSON.parse((await save(page, "model.city.json")).toString()) as {
       type: string;

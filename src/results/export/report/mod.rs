@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! read         CityJSON -> model, names, photographs
-//! reported     these with what was measured
+//! written      the same of a model, as its CityJSON file has them
+//! reported     these with what was measured, and the files of them
 //! page         the page: HTML with its style and pictures inside
 //! html         its text and tables
 //! plan         a plan with dimensions, SVG
@@ -13,8 +14,8 @@
 //! svg          numbers, lines and words of the pictures
 //! ```
 //!
-//! All of it is made of `model.city.json` alone: `ridgeline report` makes of a folder what the run
-//! wrote into it, byte for byte.
+//! All of it is made of what `model.city.json` says: `ridgeline report` makes of a folder what the
+//! run wrote into it, byte for byte.
 
 mod axonometric;
 mod html;
@@ -26,35 +27,24 @@ mod roofs;
 mod sheet;
 mod svg;
 mod tables;
+mod written;
 
-use self::read::read_model;
-use self::reported::ReportedModel;
+pub use self::reported::ReportedModel;
+
 use crate::results::roof_report::{SetbackRule, roof_report};
 
-/// The files of the roof report, name and bytes, from a CityJSON file, with what rules of setbacks
-/// leave of the faces; an error says what is wrong with the file.
-pub fn report_files(
-    city_json: &[u8],
-    setbacks: &[SetbackRule],
-) -> Result<Vec<(String, Vec<u8>)>, String> {
-    let read = read_model(city_json)?;
-    let reported = ReportedModel {
-        buildings: roof_report(&read.model, setbacks),
-        setbacks: setbacks.to_vec(),
-        model: read.model,
-        names: read.names,
-        photographs: read.photographs,
-        walls: read.walls,
-        origin: read.origin,
-        system: read.system,
-        survey: read.survey,
-    };
-    let files = [
-        ("roof_report.html", page::page(&reported).into_bytes()),
-        ("buildings.csv", tables::buildings(&reported).into_bytes()),
-        ("facets.csv", tables::facets(&reported).into_bytes()),
-        ("edges.csv", tables::edges(&reported).into_bytes()),
-        ("roofs.json", roofs::roofs(&reported)),
-    ];
-    Ok(files.map(|(name, bytes)| (name.to_owned(), bytes)).into())
+impl ReportedModel {
+    /// The files of the roof report, name and bytes, with what rules of setbacks leave of faces.
+    pub fn files(mut self, setbacks: &[SetbackRule]) -> Vec<(String, Vec<u8>)> {
+        self.buildings = roof_report(&self.model, setbacks);
+        self.setbacks = setbacks.to_vec();
+        let files = [
+            ("roof_report.html", page::page(&self).into_bytes()),
+            ("buildings.csv", tables::buildings(&self).into_bytes()),
+            ("facets.csv", tables::facets(&self).into_bytes()),
+            ("edges.csv", tables::edges(&self).into_bytes()),
+            ("roofs.json", roofs::roofs(&self)),
+        ];
+        files.map(|(name, bytes)| (name.to_owned(), bytes)).into()
+    }
 }

@@ -7,14 +7,14 @@
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
+use super::reported::{ReportedModel, ReportedWalls};
 use crate::base::geometry::{Plane, mean_point, plan_sides, vector_area};
 use crate::base::ids::{BuildingId, FacetId};
 use crate::orienting::known::json_of;
 use crate::orienting::orientation::{PlanUnit, SystemUnits, epsg_of, units_of};
 use crate::orienting::scene::Survey;
 use crate::roofs::model::{
-    Building, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideSupport, SideUncertainty,
-    Solid, SolidFace, Surface,
+    CornerUncertainty, Facet, FacetUncertainty, SideSupport, SideUncertainty, Surface,
 };
 
 /// Roofs are no steeper than this, as the vertical part of a unit normal; what is called a roof and
@@ -24,19 +24,14 @@ const LEAST_NORMAL_Z: f64 = 1e-2;
 /// Of a smaller face the rounded corners tell no plane, square metres.
 const SLIVER_M2: f64 = 0.02;
 
-/// What a file says.
-pub(super) struct ReadModel {
-    pub(super) model: RoofModel,
-    pub(super) names: Vec<String>,
-    pub(super) photographs: Vec<Vec<String>>,
-    pub(super) walls: Vec<ReadWalls>,
-    pub(super) origin: Vector3<f64>,
-    pub(super) system: Option<String>,
-    pub(super) survey: Survey,
+impl ReportedModel {
+    /// What a CityJSON file says of its model; an error says what was expected and where.
+    pub fn read(city_json: &[u8]) -> Result<Self, String> {
+        read_model(city_json)
+    }
 }
 
-/// Reads a file; an error says what was expected and where.
-pub(super) fn read_model(bytes: &[u8]) -> Result<ReadModel, String> {
+fn read_model(bytes: &[u8]) -> Result<ReportedModel, String> {
     let text = String::from_utf8_lossy(bytes);
     let file = json_of(&text).map_err(|line| format!("is no JSON: see line {line}"))?;
     if file["type"] != "CityJSON" {
@@ -62,14 +57,11 @@ pub(super) fn read_model(bytes: &[u8]) -> Result<ReadModel, String> {
     // Shorter names first: building-2 before building-10.
     let mut objects: Vec<_> = objects.iter().collect();
     objects.sort_by_key(|(name, _)| (name.len(), name.as_str()));
-    let mut read = ReadModel {
-        model: RoofModel::default(),
-        names: Vec::new(),
-        photographs: Vec::new(),
-        walls: Vec::new(),
+    let mut read = ReportedModel {
         origin,
         system: system(&file["metadata"]),
         survey: survey(&file["metadata"]),
+        ..ReportedModel::default()
     };
     for (name, object) in &objects {
         if let Some(geometry) = solid_of(object) {
@@ -152,18 +144,9 @@ fn solid_of(object: &Value) -> Option<&Value> {
     solids.find(|g| g["lod"] == "2.2").or(last)
 }
 
-/// What the file says of the walls of a building.
-#[derive(Clone, Debug, Default)]
-pub(super) struct ReadWalls {
-    /// Their number, and how many of them photographs show.
-    pub(super) count: Option<[u64; 2]>,
-    /// Volume within them, cubic metres, where they do not stand below the eaves.
-    pub(super) volume_m3: Option<f64>,
-}
-
-fn walls_of(attributes: &Value) -> ReadWalls {
+fn walls_of(attributes: &Value) -> ReportedWalls {
     let count = |name: &str| attributes[name].as_u64();
-    ReadWalls {
+    ReportedWalls {
         count: (count("walls").zip(count("wallsSeen"))).map(|(all, seen)| [all, seen]),
         volume_m3: attributes["volumeWithinWalls"].as_f64(),
     }
@@ -171,7 +154,7 @@ fn walls_of(attributes: &Value) -> ReadWalls {
 
 /// Adds the building of an object; false where it has no roof.
 fn add_building(
-    read: &mut ReadModel,
+    read: &mut ReportedModel,
     object: &Value,
     geometry: &Value,
     vertices: &[Point3<f64>],
@@ -179,9 +162,7 @@ fn add_building(
     let shell = list(&geometry["boundaries"][0]).ok_or("its Solid has no shell")?;
     let semantics = &geometry["semantics"];
     let id = BuildingId::from_index(read.model.buildings.len());
-    let mut solid = Solid::default();
-    let mut own = std::collections::BTreeMap::new();
-    let mut facets = Vec::new();
+    let mut faces = Vec::new();
     for (i, face) in shell.iter().enumerate() {
         let of_face = |problem: &str| format!("face {i}: {problem}");
         let rings = list(face).ok_or_else(|| of_face("no list of rings"))?;
@@ -196,43 +177,15 @@ fn add_building(
         }
         let surface = (semantics["values"][0][i].as_u64())
             .map_or(&Value::Null, |s| &semantics["surfaces"][s as usize]);
-        let kind = add_surface(read, id, &rings, surface);
-        if let Surface::Roof(facet) = kind {
-            facets.push(facet);
-        }
-        let mut index = |p: &Point3<f64>| {
-            let next = solid.vertices.len() as u32;
-            // Bits, because the same vertex has the same ones.
-            let index = *own.entry([p.x, p.y, p.z].map(f64::to_bits)).or_insert(next);
-            if index == next {
-                solid.vertices.push(*p);
-            }
-            index
-        };
-        let rings = rings
-            .iter()
-            .map(|ring| ring.iter().map(&mut index).collect());
-        solid.faces.push(SolidFace {
-            surface: kind,
-            rings: rings.collect(),
-        });
+        faces.push((add_surface(read, id, &rings, surface), rings));
     }
-    if facets.is_empty() {
-        return Ok(false);
-    }
-    let lowest = solid.vertices.iter().fold(f64::INFINITY, |z, p| z.min(p.z));
-    let stated = object["attributes"]["groundHeight"].as_f64();
-    read.model.buildings.push(Building {
-        facets,
-        ground_z: stated.map_or(lowest, |z| z - read.origin.z),
-        solid,
-    });
-    Ok(true)
+    let ground_m = object["attributes"]["groundHeight"].as_f64();
+    Ok(read.add_building(faces, ground_m.map(|z| z - read.origin.z)))
 }
 
 /// What a face of a building is; a roof becomes a facet.
 fn add_surface(
-    read: &mut ReadModel,
+    read: &mut ReportedModel,
     building: BuildingId,
     rings: &[Vec<Point3<f64>>],
     surface: &Value,
@@ -258,7 +211,7 @@ fn ring_of(ring: &Value, vertices: &[Point3<f64>]) -> Option<Vec<Point3<f64>>> {
 
 /// The plane of a roof, from the vector area of its rings through their middle; `None` where it
 /// does not look up.
-fn plane_of(rings: &[Vec<Point3<f64>>]) -> Option<Plane> {
+pub(super) fn plane_of(rings: &[Vec<Point3<f64>>]) -> Option<Plane> {
     let areas = rings.iter().map(|ring| vector_area(ring.iter().copied()));
     let area: Vector3<f64> = areas.sum();
     let looks_up = |plane: &Plane| plane.normal.z > LEAST_NORMAL_Z;

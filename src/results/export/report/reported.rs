@@ -4,27 +4,27 @@ use nalgebra::{Point3, Vector3};
 use serde_json::{Value, json};
 
 use super::super::format::rounded;
-use super::read::ReadWalls;
 use crate::base::geometry::mean_point;
 use crate::base::math::{atan2, cos};
 use crate::orienting::scene::Survey;
 use crate::results::roof_report::{BuildingReport, Estimate, FacetReport, SetbackRule};
-use crate::roofs::model::RoofModel;
+use crate::roofs::model::{Building, RoofModel, Solid, SolidFace, Surface};
 
 /// The yield of one kilowatt with the losses that PVGIS proposes, on a building; its documentation
 /// is the "API non-interactive service" of the Joint Research Centre.
 const PVGIS: &str =
     "https://re.jrc.ec.europa.eu/api/v5_3/PVcalc?peakpower=1&loss=14&mountingplace=building";
 
-/// A model with what its file says of it, in numbers.
-pub(super) struct ReportedModel {
+/// A model with what its CityJSON file says of it, in numbers.
+#[derive(Clone, Debug, Default)]
+pub struct ReportedModel {
     pub(super) model: RoofModel,
     /// Names of the buildings in the file.
     pub(super) names: Vec<String>,
     /// Per facet, the photographs that show it.
     pub(super) photographs: Vec<Vec<String>>,
     /// Per building, its walls.
-    pub(super) walls: Vec<ReadWalls>,
+    pub(super) walls: Vec<ReportedWalls>,
     /// Add it to the model's coordinates for those of the world.
     pub(super) origin: Vector3<f64>,
     /// The coordinate system, where the file states it.
@@ -36,7 +36,57 @@ pub(super) struct ReportedModel {
     pub(super) setbacks: Vec<SetbackRule>,
 }
 
+/// What the file says of the walls of a building.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ReportedWalls {
+    /// Their number, and how many of them photographs show.
+    pub(super) count: Option<[u64; 2]>,
+    /// Volume within them, cubic metres, where they do not stand below the eaves.
+    pub(super) volume_m3: Option<f64>,
+}
+
 impl ReportedModel {
+    /// Adds a building of faces, whose facets are there, on a ground of this height, else at its
+    /// lowest corner; false where it has no roof.
+    pub(super) fn add_building(
+        &mut self,
+        faces: Vec<(Surface, Vec<Vec<Point3<f64>>>)>,
+        ground_z: Option<f64>,
+    ) -> bool {
+        let mut solid = Solid::default();
+        let mut own = std::collections::BTreeMap::new();
+        let mut facets = Vec::new();
+        for (surface, rings) in faces {
+            if let Surface::Roof(facet) = surface {
+                facets.push(facet);
+            }
+            let mut index = |p: &Point3<f64>| {
+                let next = solid.vertices.len() as u32;
+                // Bits, because the same vertex has the same ones.
+                let index = *own.entry([p.x, p.y, p.z].map(f64::to_bits)).or_insert(next);
+                if index == next {
+                    solid.vertices.push(*p);
+                }
+                index
+            };
+            let rings = rings
+                .iter()
+                .map(|ring| ring.iter().map(&mut index).collect());
+            let rings = rings.collect();
+            solid.faces.push(SolidFace { surface, rings });
+        }
+        if facets.is_empty() {
+            return false;
+        }
+        let lowest = solid.vertices.iter().fold(f64::INFINITY, |z, p| z.min(p.z));
+        self.model.buildings.push(Building {
+            facets,
+            ground_z: ground_z.unwrap_or(lowest),
+            solid,
+        });
+        true
+    }
+
     /// The middle of a facet's corners, on its plane.
     pub(super) fn center(&self, report: &FacetReport) -> Point3<f64> {
         let facet = &self.model.facets[report.facet.index()];

@@ -18,11 +18,12 @@ const GROUPS: readonly (readonly [title: string, files: Files])[] = [
       "roofs.json": "all of it for programs, with usable areas",
     },
   ],
-  ["CAD", { "model.dxf": "3DFACE and LINE, AutoCAD R12" }],
+  ["CAD", { "model.ifc": "IFC4: roofs, their faces, walls, areas", "model.dxf": "3DFACE and LINE, AutoCAD R12" }],
   [
     "GIS",
     {
       "model.city.json": "CityJSON 2.0, LoD 2.2 and 2.3",
+      "model.city.jsonl": "the same as CityJSONSeq, a building a line",
       "footprints.geojson": "outlines on the ground",
       "facets.geojson": "roof faces in plan: areas, slopes, directions",
       "edges.geojson": "ridges, hips, valleys, eaves, rakes",
