@@ -7,6 +7,7 @@
 //! photograph_head    what of a photograph is read to plan with it
 //! image_orientation  interior and exterior orientation of one image: what every reader returns
 //! angles             omega, phi, kappa and their units
+//! frame_sigma        what a frame's scale and level are worth
 //! geodesy            the ellipsoid, and the anchor of a local frame on it
 //! formats            the readers, one file for each format; how to add one
 //! format             the list of formats, in the order of preference
@@ -45,6 +46,7 @@ pub(crate) mod detect;
 mod epsg;
 mod format;
 mod formats;
+mod frame_sigma;
 mod geodesy;
 mod image_orientation;
 mod input_file;
@@ -67,6 +69,7 @@ pub use detect::{FileKind, detect};
 pub(crate) use detect::{GCP_LIST, GEO_LIST, POINT_CLOUD, is_ascii_grid};
 pub(crate) use epsg::{TransverseMercator, is_geographic, plane_of};
 pub use format::Format;
+pub use frame_sigma::FrameSigma;
 pub(crate) use geodesy::{A_M, geocentric_of, geographic_of};
 pub use geodesy::{Anchor, MOST_DATUM_M};
 pub use image_orientation::{Crop, Orientation};

@@ -1,6 +1,7 @@
 //! The coordinate reference system that files name, as its EPSG code.
 
 use super::epsg::is_geographic;
+use super::frame_sigma::FrameSigma;
 use super::geodesy::Anchor;
 use super::well_known;
 
@@ -43,6 +44,15 @@ pub(super) fn of_orient(text: &str) -> StatedReference {
         }) => StatedReference::System(code),
         Ok(_) | Err(_) => StatedReference::None,
     }
+}
+
+/// What such a report says that the frame's scale and level are worth.
+pub(super) fn frame_sigma_of_orient(text: &str) -> Option<FrameSigma> {
+    #[derive(serde::Deserialize)]
+    struct Report {
+        frame_sigma: Option<FrameSigma>,
+    }
+    serde_json::from_str::<Report>(text).ok()?.frame_sigma
 }
 
 /// EPSG code of the system of an INPHO project.

@@ -27,6 +27,12 @@ use crate::roofs::solids::WRITTEN_STEP_M;
 /// Name of the appearance theme.
 const THEME: &str = "photographs";
 
+/// The attribute of a building that says what scale and level of the frame are worth, and its
+/// members.
+pub(super) const FRAME_SIGMA: &str = "frameSigma";
+pub(super) const LENGTH_OF_10_M: &str = "lengthOf10m";
+pub(super) const HEIGHT_OVER_10_M: &str = "heightOver10m";
+
 /// The model as a CityJSON file.
 pub(super) fn city_json(
     scene: &Scene,
@@ -200,6 +206,13 @@ fn building_object(
     add(&mut attributes, "lowestRoofHeight", report.lowest_m);
     add(&mut attributes, "highestRoofHeight", report.highest_m);
     attributes["lengths"] = lengths(&report.lengths);
+    if let Some(frame) = &scene.survey.frame_sigma {
+        let stated = |sigma: Option<f64>| json!(sigma.map(|sigma| rounded(sigma, 6)));
+        attributes[FRAME_SIGMA] = json!({
+            LENGTH_OF_10_M: stated(frame.length_of_10_m),
+            HEIGHT_OVER_10_M: stated(frame.height_over_10_m),
+        });
+    }
     json!({
         "type": "Building",
         "attributes": attributes,

@@ -29,6 +29,7 @@ mod tables;
 
 use self::read::read_model;
 use self::reported::ReportedModel;
+use super::measured::in_frame;
 use crate::results::roof_report::{SetbackRule, roof_report};
 
 /// The files of the roof report, name and bytes, from a CityJSON file, with what rules of setbacks
@@ -39,7 +40,10 @@ pub fn report_files(
 ) -> Result<Vec<(String, Vec<u8>)>, String> {
     let read = read_model(city_json)?;
     let reported = ReportedModel {
-        buildings: roof_report(&read.model, setbacks),
+        buildings: in_frame(
+            roof_report(&read.model, setbacks),
+            read.survey.frame_sigma.as_ref(),
+        ),
         setbacks: setbacks.to_vec(),
         model: read.model,
         names: read.names,

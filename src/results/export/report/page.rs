@@ -74,8 +74,15 @@ fn summary(html: &mut Html, reported: &ReportedModel) {
         ));
         return;
     }
+    let frame = reported.survey.frame_sigma.as_ref();
+    let frame = frame.map_or_else(String::new, |frame| {
+        format!(
+            " The frame is in it, too: {}.",
+            frame.words().replace("+-", "±")
+        )
+    });
     html.push(format_args!(
-        "<p>Buildings: {}. Roof faces: {faces}, {area} in all. {system}</p>\n<p class=\"note\">{EXPLANATION}</p>\n",
+        "<p>Buildings: {}. Roof faces: {faces}, {area} in all. {system}</p>\n<p class=\"note\">{EXPLANATION}{frame}</p>\n",
         buildings.len()
     ));
     figure(
