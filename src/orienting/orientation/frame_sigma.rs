@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 /// Standard deviations of a frame as a whole: every length is too long by the same share, every
 /// slope too steep by the same angle. What measuring adds is independent of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct FrameSigma {
     /// Of a length of 10 m by the scale, metres; `None` where nothing tells.
     pub length_of_10_m: Option<f64>,

@@ -13,9 +13,7 @@ use nalgebra::{Matrix2, Point3, SMatrix, SVector, SymmetricEigen, Vector3};
 
 use super::similarity::Similarity;
 use crate::base::geometry::{mean_point, rotation_from_axis_angle};
-use crate::base::least_squares::{
-    Loss, NormalEquations, Stop, fit as least_squares, variance_of_unit_weight,
-};
+use crate::base::least_squares::{Loss, NormalEquations, Stop, fit as least_squares};
 use crate::orienting::orientation::FrameSigma;
 
 /// What is known of a place.
@@ -170,8 +168,8 @@ pub(super) struct Worth {
     pub lag: f64,
 }
 
-/// What a fit by these places is worth: by their standard deviations, or by their residuals where
-/// those are larger, in plan and in height. `None` where they leave an unknown open.
+/// What a fit by these places is worth, by their residuals in plan and in height: the standard
+/// deviations that are stated count as one residual each. `None` where they leave an unknown open.
 pub(super) fn worth(
     ties: &[Tie],
     similarity: &Similarity,
@@ -200,8 +198,8 @@ pub(super) fn worth(
     for part in 0..2 {
         let free = of_part[part].iter().filter(|&&i| !is_held[i]).count();
         // One more residual as large as it should be: without redundancy nothing else is known.
-        let variance = variance_of_unit_weight(squares[part], redundancy[part] - free as f64, 1.0);
-        spread += parts[part] * variance;
+        let more = (redundancy[part] - free as f64).max(0.0);
+        spread += parts[part] * ((squares[part] + 1.0) / (more + 1.0));
     }
     let inverse = whole.inverse()?;
     let covariance = inverse * spread * inverse;

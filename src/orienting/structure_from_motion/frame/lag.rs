@@ -26,7 +26,6 @@ use crate::orienting::structure_from_motion::triangulation::LARGEST_RESIDUAL_SIG
 
 /// By how much stated positions are behind the photographs along the flight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Lag {
     /// Seconds where all headers state a time, else metres; negative where positions are ahead.
     pub lag: f64,

@@ -110,19 +110,7 @@ pub(in super::super) fn report(
     let RayCounts { rays, squares, .. } = &counts;
     let registered = block.registered();
     let total: usize = rays.iter().sum();
-    let photos: Vec<PhotoReport> = (registered.iter().enumerate())
-        .map(|(slot, &photo)| PhotoReport {
-            file: names.paths[photo].to_owned(),
-            rays: rays[photo],
-            rms_px: (squares[photo] / rays[photo].max(1) as f64).sqrt(),
-            sigma_m: covariance.map(|c| deviations(&c.centers[slot])),
-            sigma_deg: covariance.map(|c| largest_deviation(&c.turns[slot]).to_degrees()),
-            partners: counts.partners(photo, &registered),
-            from_stated_m: from_stated(block, names, basis, photo),
-            residual_m: from_stated(block, names, basis, photo)
-                .map(|d| (Vector3::from(d) - moved_m(basis, photo)).into()),
-        })
-        .collect();
+    let photos = photos(block, names, basis, covariance, &counts);
     let rays_a_point = total as f64 / counts.points.max(1) as f64;
     let (frame, anchor, mut warnings) = frame_words(basis);
     warnings.extend((rays_a_point < FEW_RAYS).then(|| {
@@ -133,19 +121,18 @@ pub(in super::super) fn report(
     }));
     let cameras = cameras(block, names, covariance);
     warnings.extend(cameras.iter().filter_map(contradiction));
-    let (epsg, offset, control) = match basis {
+    let (epsg, offset, control, frame_sigma, lag) = match basis {
         FrameBasis::Control {
             epsg,
             offset,
             points,
+            sigma,
             ..
-        } => (*epsg, *offset, points.clone()),
-        _ => (None, [0.0; 3], Vec::new()),
-    };
-    let (frame_sigma, lag) = match basis {
-        FrameBasis::Control { sigma, .. } => (*sigma, None),
-        FrameBasis::Positions { sigma, lag, .. } => (*sigma, lag.clone()),
-        _ => (None, None),
+        } => (*epsg, *offset, points.clone(), *sigma, None),
+        FrameBasis::Positions { sigma, lag, .. } => {
+            (None, [0.0; 3], Vec::new(), *sigma, lag.clone())
+        }
+        _ => (None, [0.0; 3], Vec::new(), None, None),
     };
     OrientReport {
         frame,
@@ -166,6 +153,32 @@ pub(in super::super) fn report(
         overlap: counts.overlap(&registered),
         warnings,
     }
+}
+
+/// The oriented photographs.
+fn photos(
+    block: &Block,
+    names: &Names,
+    basis: &FrameBasis,
+    covariance: Option<&Covariance>,
+    counts: &RayCounts,
+) -> Vec<PhotoReport> {
+    let (RayCounts { rays, squares, .. }, registered) = (counts, block.registered());
+    (registered.iter().enumerate())
+        .map(|(slot, &photo)| {
+            let from_stated = from_stated(block, names, basis, photo);
+            PhotoReport {
+                file: names.paths[photo].to_owned(),
+                rays: rays[photo],
+                rms_px: (squares[photo] / rays[photo].max(1) as f64).sqrt(),
+                sigma_m: covariance.map(|c| deviations(&c.centers[slot])),
+                sigma_deg: covariance.map(|c| largest_deviation(&c.turns[slot]).to_degrees()),
+                partners: counts.partners(photo, &registered),
+                from_stated_m: from_stated.map(Vector3::into),
+                residual_m: from_stated.map(|d| (d - moved_m(basis, photo)).into()),
+            }
+        })
+        .collect()
 }
 
 /// What the rays of a block count up to.
@@ -261,13 +274,19 @@ fn contradiction(camera: &CameraReport) -> Option<String> {
     })
 }
 
-fn from_stated(block: &Block, names: &Names, basis: &FrameBasis, photo: usize) -> Option<[f64; 3]> {
+/// A photograph's place minus the stated one, metres.
+fn from_stated(
+    block: &Block,
+    names: &Names,
+    basis: &FrameBasis,
+    photo: usize,
+) -> Option<Vector3<f64>> {
     if !matches!(basis, FrameBasis::Positions { .. }) {
         return None;
     }
     let center = block.photos[photo].pose.as_ref()?.center;
     let stated = names.stated.get(photo).filter(|s| !s.lacks_height)?;
-    Some((center - stated.position?).into())
+    Some(center - stated.position?)
 }
 
 /// By how much the stated position of a photograph was moved along the flight, metres.
@@ -343,7 +362,7 @@ fn frame_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) {
             let (unit, agreeing) = (basis.unit(), of(false).filter(|p| p.agrees).count());
             let check = match of(true).count() {
                 0 => String::new(),
-                count => format!("; {count} check points{}", rms_words(rms_m(of(true)))),
+                count => format!("; check points: {count}{}", rms_words(rms_m(of(true)))),
             };
             let frame = match anchor {
                 Some(anchor) => metres_from(anchor),

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::sheet::{control_tables, frame_words};
+use super::sheet::{control_tables, worth_words};
 use crate::orienting::orientation::FrameSigma;
 use crate::orienting::structure_from_motion::frame::Lag;
 use crate::orienting::structure_from_motion::ground_control::ControlResidual;
@@ -166,6 +166,11 @@ impl OrientReport {
         self.block_words() + &self.remarks()
     }
 
+    /// What scale and level of the frame are worth, and the lag of the receiver, a sentence each.
+    pub fn worth(&self) -> Vec<String> {
+        worth_words(self.frame_sigma.as_ref(), self.lag.as_ref())
+    }
+
     /// The block as a whole, and its cameras.
     fn block_words(&self) -> String {
         let mut text = format!(
@@ -177,7 +182,9 @@ impl OrientReport {
             self.rms_px,
             self.frame
         );
-        text += &frame_words(self.frame_sigma.as_ref(), self.lag.as_ref());
+        for words in self.worth() {
+            text += &(words + "\n");
+        }
         for camera in &self.cameras {
             text += &camera.words();
         }

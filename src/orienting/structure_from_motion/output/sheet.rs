@@ -37,8 +37,11 @@ impl ControlSheet {
 
     /// As text.
     pub fn to_text(&self) -> String {
-        let worth = frame_words(self.frame_sigma.as_ref(), self.lag.as_ref());
-        let mut text = format!("{}\n{worth}{}", self.frame, control_tables(&self.control));
+        let mut text = format!("{}\n", self.frame);
+        for words in worth_words(self.frame_sigma.as_ref(), self.lag.as_ref()) {
+            text += &(words + "\n");
+        }
+        text += &control_tables(&self.control);
         text += &self.positions();
         if self.control.is_empty() && self.photos.iter().all(|p| p.from_stated_m.is_none()) {
             text += "neither control points nor stated positions give the frame\n";
@@ -78,14 +81,10 @@ impl ControlSheet {
     }
 }
 
-/// What scale, level and the lag of receivers are worth, a line each.
-pub(super) fn frame_words(sigma: Option<&FrameSigma>, lag: Option<&Lag>) -> String {
-    let lines = [sigma.map(FrameSigma::words), lag.map(Lag::words)];
-    lines
-        .into_iter()
-        .flatten()
-        .map(|line| line + "\n")
-        .collect()
+/// What scale and level are worth, and the lag of receivers, a sentence each.
+pub(super) fn worth_words(sigma: Option<&FrameSigma>, lag: Option<&Lag>) -> Vec<String> {
+    let words = [sigma.map(FrameSigma::words), lag.map(Lag::words)];
+    words.into_iter().flatten().collect()
 }
 
 /// Tables of the residuals at control points and at check points; empty without them.
