@@ -75,6 +75,11 @@ fn a_folder_makes_the_same_report_again() {
     }
 }
 
+/// The standard deviation of a sum of two independent errors.
+fn both_sigmas(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
+}
+
 #[test]
 fn what_the_frame_is_worth_is_in_every_standard_deviation_and_only_where_it_is_stated() {
     let frame = FrameSigma {
@@ -116,7 +121,7 @@ fn what_the_frame_is_worth_is_in_every_standard_deviation_and_only_where_it_is_s
             for (own, both) in rows(&without[table]).iter().zip(rows(&with[table])) {
                 assert_eq!(own[value], both[value]);
                 let added = 0.005 * dimensions * number(own, value);
-                let expected = number(own, sigma).hypot(added);
+                let expected = both_sigmas(number(own, sigma), added);
                 let off = number(&both, sigma) - expected;
                 assert!(
                     off.abs() < 2e-3 * expected.max(1.0),
@@ -127,7 +132,7 @@ fn what_the_frame_is_worth_is_in_every_standard_deviation_and_only_where_it_is_s
         let slope = |files: &BTreeMap<String, Vec<u8>>| {
             number(&rows(&files["facets.csv"])[0], "slope_sigma_deg")
         };
-        let expected = slope(&without).hypot(0.002f64.to_degrees());
+        let expected = both_sigmas(slope(&without), 0.002f64.to_degrees());
         assert!((slope(&with) - expected).abs() < 2e-3, "{name}");
     }
 }

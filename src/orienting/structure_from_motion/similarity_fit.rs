@@ -56,23 +56,20 @@ pub(super) struct Tie {
     pub velocity: Vector3<f64>,
 }
 
-/// Unknowns of a fit that stay as they are.
+/// Which unknowns of a fit are free beside scale, azimuth and shift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Held {
-    /// The lag.
-    Lag,
-    /// The lag, and up: there is only a turn about it.
-    LagAndUp,
-    /// Up.
-    Up,
+pub(super) struct Free {
+    /// Where up is; else there is only a turn about it.
+    pub up: bool,
+    pub lag: bool,
 }
 
-impl Held {
-    /// Of ds, w, dt, lag.
-    fn are(held: Option<Self>) -> [bool; 8] {
-        let up = matches!(held, Some(Self::Up | Self::LagAndUp));
-        let lag = matches!(held, Some(Self::Lag | Self::LagAndUp));
-        [false, up, up, false, false, false, false, lag]
+impl Free {
+    /// Of ds, w, dt, lag: is it held?
+    fn held(self) -> [bool; 8] {
+        [
+            false, !self.up, !self.up, false, false, false, false, !self.lag,
+        ]
     }
 }
 
@@ -130,10 +127,10 @@ fn hold(equations: &mut NormalEquations<8>, held: [bool; 8]) {
 pub(super) fn fitted(
     start: &Similarity,
     ties: &[Tie],
-    held: Option<Held>,
+    free: Free,
     loss: Loss,
 ) -> Option<(Similarity, f64)> {
-    let (middle, held) = (middle_of(ties), Held::are(held));
+    let (middle, held) = (middle_of(ties), free.held());
     let linearised = |(similarity, lag): &(Similarity, f64)| {
         let mut equations = NormalEquations::default();
         for tie in ties {
@@ -170,17 +167,11 @@ pub(super) struct Worth {
 
 /// What a fit by these places is worth, by their residuals in plan and in height: the standard
 /// deviations that are stated count as one residual each. `None` where they leave an unknown open.
-pub(super) fn worth(
-    ties: &[Tie],
-    similarity: &Similarity,
-    lag: f64,
-    held: Option<Held>,
-) -> Option<Worth> {
-    let is_held = Held::are(held);
-    let middle = middle_of(ties);
+pub(super) fn worth(ties: &[Tie], similarity: &Similarity, lag: f64, free: Free) -> Option<Worth> {
+    let (middle, is_held) = (middle_of(ties), free.held());
     let mut whole = NormalEquations::default();
     let mut parts = [SMatrix::<f64, 8, 8>::zeros(); 2];
-    let (mut squares, mut redundancy) = ([0.0; 2], [0.0; 2]);
+    let (mut squares, mut known) = ([0.0; 2], [0usize; 2]);
     for tie in ties {
         let (residual, by) = tie.linearised(similarity, lag, &middle, is_held);
         whole.add_weighted(&residual, &by, 1.0);
@@ -188,7 +179,7 @@ pub(super) fn worth(
             let part = usize::from(row == 2);
             parts[part] += by.row(row).transpose() * by.row(row);
             squares[part] += residual[row] * residual[row];
-            redundancy[part] += f64::from(u8::from(is_known));
+            known[part] += usize::from(is_known);
         }
     }
     hold(&mut whole, is_held);
@@ -196,19 +187,18 @@ pub(super) fn worth(
     let of_part = [[0, 3, 4, 5, 7].as_slice(), &[1, 2, 6]];
     let mut spread = SMatrix::<f64, 8, 8>::zeros();
     for part in 0..2 {
-        let free = of_part[part].iter().filter(|&&i| !is_held[i]).count();
+        let unknowns = of_part[part].iter().filter(|&&i| !is_held[i]).count();
         // One more residual as large as it should be: without redundancy nothing else is known.
-        let more = (redundancy[part] - free as f64).max(0.0);
-        spread += parts[part] * ((squares[part] + 1.0) / (more + 1.0));
+        let more = known[part].saturating_sub(unknowns) + 1;
+        spread += parts[part] * ((squares[part] + 1.0) / more as f64);
     }
     let inverse = whole.inverse()?;
     let covariance = inverse * spread * inverse;
     let tilts: Matrix2<f64> = covariance.fixed_view::<2, 2>(1, 1).into_owned();
     let tilt = SymmetricEigen::new(tilts).eigenvalues.max().max(0.0).sqrt();
-    let has_up = !is_held[1];
-    let frame = FrameSigma::of(Some(covariance[(0, 0)].sqrt()), has_up.then_some(tilt));
+    let scale = covariance[(0, 0)].sqrt();
     Some(Worth {
-        frame,
+        frame: FrameSigma::of(Some(scale), free.up.then_some(tilt)),
         lag: covariance[(7, 7)].sqrt(),
     })
 }
@@ -220,6 +210,15 @@ mod tests {
     use crate::orienting::structure_from_motion::random::Random;
 
     const SIGMA_M: f64 = 0.5;
+
+    const BOTH: Free = Free {
+        up: true,
+        lag: true,
+    };
+    const NEITHER: Free = Free {
+        up: false,
+        lag: false,
+    };
 
     fn planted() -> Similarity {
         Similarity {
@@ -275,7 +274,7 @@ mod tests {
             rotation: rotation_from_axis_angle(&Vector3::new(0.25, 1.3, -0.2)),
             shift: Vector3::new(280.0, -10.0, 0.0),
         };
-        let (found, lag) = fitted(&start, &exact, None, Loss::Cauchy(2.0)).unwrap();
+        let (found, lag) = fitted(&start, &exact, BOTH, Loss::Cauchy(2.0)).unwrap();
         assert!((found.scale - 7.5).abs() < 1e-3 && (lag - 2.0).abs() < 1e-3);
         assert!((found.rotation.matrix() - planted().rotation.matrix()).norm() < 1e-3);
         let mut random = Random::new(2);
@@ -283,11 +282,11 @@ mod tests {
         let draws = 400;
         for _ in 0..draws {
             let noisy = ties(&mut random, SIGMA_M);
-            let (s, lag) = fitted(&planted(), &noisy, None, Loss::Squares).unwrap();
-            let worth = worth(&noisy, &s, lag, None).unwrap();
+            let (s, lag) = fitted(&planted(), &noisy, BOTH, Loss::Squares).unwrap();
+            let worth = worth(&noisy, &s, lag, BOTH).unwrap();
             let up = (s.rotation * planted().rotation.inverse()) * Vector3::z();
             // Two tilts, of which the larger is stated.
-            let off = [s.scale / 7.5 - 1.0, up.x.hypot(up.y), lag - 2.0];
+            let off = [s.scale / 7.5 - 1.0, up.xy().norm(), lag - 2.0];
             let sigma = [worth.frame.scale(), worth.frame.tilt(), worth.lag];
             for i in 0..3 {
                 scattered[i] += off[i] * off[i] / f64::from(draws);
@@ -304,19 +303,17 @@ mod tests {
     #[test]
     fn what_is_held_stays_and_what_is_open_gives_none() {
         let noisy = ties(&mut Random::new(3), SIGMA_M);
-        let held = fitted(&planted(), &noisy, Some(Held::LagAndUp), Loss::Squares).unwrap();
+        let held = fitted(&planted(), &noisy, NEITHER, Loss::Squares).unwrap();
         let up = held.0.rotation * planted().rotation.inverse() * Vector3::z();
         assert!(held.1 == 0.0 && (up.z - 1.0).abs() < 1e-12);
-        let sigma = worth(&noisy, &held.0, 0.0, Some(Held::Up)).unwrap().frame;
+        let sigma = worth(&noisy, &held.0, 0.0, Free { up: false, ..BOTH })
+            .unwrap()
+            .frame;
         assert_eq!((sigma.tilt(), sigma.height_over_10_m), (0.0, None));
         assert!(sigma.length_of_10_m.is_some());
-        let still: Vec<Tie> = (noisy.iter().cloned())
-            .map(|tie| Tie {
-                velocity: Vector3::zeros(),
-                ..tie
-            })
-            .collect();
-        assert!(fitted(&planted(), &still, None, Loss::Squares).is_none());
-        assert!(worth(&still, &planted(), 0.0, None).is_none());
+        let mut still = noisy;
+        (still.iter_mut()).for_each(|tie| tie.velocity = Vector3::zeros());
+        assert!(fitted(&planted(), &still, BOTH, Loss::Squares).is_none());
+        assert!(worth(&still, &planted(), 0.0, BOTH).is_none());
     }
 }

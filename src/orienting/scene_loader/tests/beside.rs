@@ -292,8 +292,8 @@ fn the_place_that_orient_finds_is_read_beside_its_model() {
         assert_eq!(survey.anchor.map(|anchor| anchor.lon_deg), lon, "{text}");
         assert_eq!(survey.epsg, epsg, "{text}");
     }
-    let worth =
-        r#"{"is_metric":true,"frame_sigma":{"length_of_10_m":0.03,"height_over_10_m":null}}"#;
+    let sigma = "{\"frame_sigma\":{\"length_of_10_m\":0.03,\"height_over_10_m\":null},";
+    let worth = report("null", "null", true).replacen('{', sigma, 1);
     let found = with(&[("colmap/orientation.json", worth.as_bytes())]);
     let sigma = load_scene(&found, &all()).unwrap().survey.frame_sigma;
     let sigma = sigma.map(|s| (s.length_of_10_m, s.height_over_10_m));

@@ -21,7 +21,7 @@ use crate::base::math;
 use crate::orienting::orientation::FrameSigma;
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::similarity::Similarity;
-use crate::orienting::structure_from_motion::similarity_fit::{Held, KnownOf, Tie, fitted, worth};
+use crate::orienting::structure_from_motion::similarity_fit::{Free, KnownOf, Tie, fitted, worth};
 use crate::orienting::structure_from_motion::triangulation::LARGEST_RESIDUAL_SIGMAS;
 
 /// By how much stated positions are behind the photographs along the flight.
@@ -66,7 +66,8 @@ impl Lag {
     }
 }
 
-/// What is known of stated positions once they have placed a block.
+/// Stated positions, and what places a block by them.
+#[derive(Clone, Copy)]
 pub(super) struct Stated<'a> {
     pub block: &'a Block,
     pub stated: &'a [StatedPose],
@@ -83,187 +84,164 @@ impl Stated<'_> {
         &self,
         angles: &AnglesFinding,
     ) -> (Similarity, Found, Option<Lag>, Option<FrameSigma>) {
-        let seen = self.lag();
-        if let Some((lag, stated)) = seen.as_ref().filter(|(lag, _)| lag.is_applied)
-            && let Ok((similarity, found, _)) = by_positions(self.block, stated, angles)
-            && found.agreeing >= self.found.agreeing
-        {
-            let without = Stated {
-                stated,
-                similarity: &similarity,
-                found: &found,
-                ..*self
-            };
-            let sigma = without.worth(true, angles);
-            let as_stated = Stated {
-                found: &found,
-                ..*self
-            };
-            let lag = Lag {
-                before_m: as_stated.rms_m(),
-                after_m: found.rms_m,
-                ..lag.clone()
-            };
-            return (similarity, found, Some(lag), sigma);
+        let (velocities, unit) = self.velocities();
+        let mut lag = self.lag(&velocities, unit);
+        if let Some(lag) = lag.as_mut().filter(|lag| lag.is_applied) {
+            let (moved_m, stated) = self.moved(&velocities, lag.lag);
+            let again = by_positions(self.block, &stated, angles);
+            if let Ok((similarity, found, _)) = again
+                && found.agreeing >= self.found.agreeing
+            {
+                let [as_stated, without] = [(self.stated, self.similarity), (&stated, &similarity)]
+                    .map(|(stated, similarity)| Stated {
+                        stated,
+                        similarity,
+                        found: &found,
+                        ..*self
+                    });
+                (lag.before_m, lag.after_m) = (as_stated.rms_m(), found.rms_m);
+                lag.moved_m = moved_m;
+                let sigma = without.worth(Some(&velocities), angles);
+                return (similarity, found, Some(lag.clone()), sigma);
+            }
+            lag.is_applied = false;
         }
-        let lag = seen.map(|(lag, _)| Lag {
-            is_applied: false,
-            moved_m: Vec::new(),
-            ..lag
-        });
-        let sigma = self.worth(false, angles);
+        let sigma = self.worth(None, angles);
         (self.similarity.clone(), self.found.clone(), lag, sigma)
-    }
-
-    fn placed(&self, photo: usize) -> Option<Point3<f64>> {
-        let pose = self.block.photos[photo].pose.as_ref()?;
-        Some(self.similarity.point(&pose.center))
     }
 
     /// By how much each photograph's place moves in a unit of the lag, and that unit.
     fn velocities(&self) -> (Vec<Vector3<f64>>, &'static str) {
-        let photos = 0..self.stated.len();
-        let oriented: Vec<(usize, Point3<f64>)> = photos
-            .filter_map(|photo| Some((photo, self.placed(photo)?)))
+        let photos = self.block.photos.iter().enumerate();
+        let mut flown: Vec<(usize, usize, Point3<f64>)> = photos
+            .filter_map(|(i, photo)| {
+                let place = self.similarity.point(&photo.pose.as_ref()?.center);
+                Some((photo.camera, i, place))
+            })
             .collect();
-        let has_times = (oriented.iter()).all(|(photo, _)| self.stated[*photo].taken_s.is_some());
-        let at = |photo: usize| match self.stated[photo].taken_s {
+        let has_times = (flown.iter()).all(|(_, i, _)| self.stated[*i].taken_s.is_some());
+        let at = |i: usize| match self.stated[i].taken_s {
             Some(seconds) if has_times => seconds,
-            _ => photo as f64,
+            _ => i as f64,
         };
+        flown.sort_by(|a, b| a.0.cmp(&b.0).then(at(a.1).total_cmp(&at(b.1))));
         let mut velocities = vec![Vector3::zeros(); self.stated.len()];
-        for &(photo, place) in &oriented {
-            let camera = self.block.photos[photo].camera;
-            let others =
-                || (oriented.iter()).filter(|(i, _)| self.block.photos[*i].camera == camera);
-            let later =
-                |a: &&(usize, Point3<f64>), b: &&(usize, Point3<f64>)| at(a.0).total_cmp(&at(b.0));
-            let before = others().filter(|(i, _)| at(*i) < at(photo)).max_by(later);
-            // The first one flies as it goes on.
-            let after = || others().filter(|(i, _)| at(*i) > at(photo)).min_by(later);
-            if let Some((other, from)) = before.or_else(after) {
-                let (path, time) = (place - from, at(photo) - at(*other));
-                velocities[photo] = match has_times {
-                    true => path / time,
-                    false => path.try_normalize(0.0).unwrap_or_default() * time.signum(),
-                };
+        for of_camera in flown.chunk_by(|a, b| a.0 == b.0) {
+            for (k, (_, i, place)) in of_camera.iter().enumerate() {
+                let is_other = |(_, other, _): &&(usize, usize, Point3<f64>)| at(*other) != at(*i);
+                // The first one flies as it goes on.
+                let before = of_camera[..k].iter().rev().find(is_other);
+                let after = || of_camera[k..].iter().find(is_other);
+                if let Some((_, other, from)) = before.or_else(after) {
+                    let (path, time) = (place - from, at(*i) - at(*other));
+                    velocities[*i] = match has_times {
+                        true => path / time,
+                        false => path.try_normalize(0.0).unwrap_or_default() * time.signum(),
+                    };
+                }
             }
         }
         (velocities, if has_times { "s" } else { "m" })
     }
 
-    /// The stated positions of photographs; without `velocities` no lag shows in them.
-    fn ties(&self, velocities: &[Vector3<f64>]) -> Vec<Tie> {
-        let tie = |(photo, stated): (usize, &StatedPose)| {
-            let pose = self.block.photos[photo].pose.as_ref()?;
+    /// The positions of photographs; those that the others contradict on request only.
+    fn ties(&self, velocities: Option<&[Vector3<f64>]>, has_contradicted: bool) -> Vec<Tie> {
+        let tie = |(i, stated): (usize, &StatedPose)| {
+            let is_kept = has_contradicted || !self.found.contradicted.contains(&i);
             let has_height = self.heights > 0 && !stated.lacks_height;
             Some(Tie {
-                from: pose.center,
-                to: stated.position?,
+                from: self.block.photos[i].pose.as_ref()?.center,
+                to: stated.position.filter(|_| is_kept)?,
                 known: if has_height {
                     KnownOf::All
                 } else {
                     KnownOf::Plan
                 },
                 sigma_m: stated.sigma_m.unwrap_or(RECEIVER_SIGMA_M),
-                velocity: velocities[photo],
+                velocity: velocities.map_or_else(Vector3::zeros, |v| v[i]),
             })
         };
         self.stated.iter().enumerate().filter_map(tie).collect()
     }
 
-    /// Those of the agreeing photographs.
-    fn agreeing(&self, velocities: &[Vector3<f64>]) -> Vec<Tie> {
-        let mut stated = self.stated.to_vec();
-        for &photo in &self.found.contradicted {
-            stated[photo].position = None;
-        }
-        let only = Stated {
-            stated: &stated,
-            ..*self
+    /// The lag by all positions; `None` where the flight does not tell.
+    fn lag(&self, velocities: &[Vector3<f64>], unit: &str) -> Option<Lag> {
+        let ties = self.ties(Some(velocities), true);
+        let free = Free {
+            up: !self.found.is_levelled,
+            lag: true,
         };
-        only.ties(velocities)
+        let (mut similarity, mut lag) = (self.similarity.clone(), 0.0);
+        let mut agreeing = Vec::new();
+        // The second time the lag is no longer among the residuals.
+        for _ in 0..2 {
+            let square = |tie: &Tie, (s, lag): (&Similarity, f64)| {
+                (tie.off(s, lag) / tie.sigma_m).norm_squared()
+            };
+            let lengths = ties
+                .iter()
+                .map(|tie| square(tie, (&similarity, lag)).sqrt());
+            let typical = math::median(&mut lengths.collect::<Vec<f64>>())?;
+            let loss = Loss::Cauchy(2.0 * typical.max(0.1));
+            (similarity, lag) = fitted(&similarity, &ties, free, loss)?;
+            let agrees = |tie: &&Tie| loss.weight(square(tie, (&similarity, lag))) > 0.25;
+            agreeing = ties.iter().filter(agrees).cloned().collect();
+        }
+        let sigma = worth(&agreeing, &similarity, lag, free)?.lag;
+        Some(Lag {
+            lag,
+            sigma,
+            unit: unit.to_owned(),
+            is_applied: lag.abs() > LARGEST_RESIDUAL_SIGMAS * sigma,
+            before_m: self.found.rms_m,
+            after_m: self.found.rms_m,
+            moved_m: Vec::new(),
+        })
+    }
+
+    /// By how much a lag moves the positions, and where they are then.
+    fn moved(&self, velocities: &[Vector3<f64>], lag: f64) -> (Vec<Vector3<f64>>, Vec<StatedPose>) {
+        let moved_m: Vec<Vector3<f64>> = velocities.iter().map(|v| v * lag).collect();
+        let stated = self.stated.iter().zip(&moved_m);
+        let stated = stated.map(|(stated, moved)| StatedPose {
+            position: stated.position.map(|p| p + moved),
+            lacks_height: stated.lacks_height || self.heights == 0,
+            ..stated.clone()
+        });
+        let stated = stated.collect();
+        (moved_m, stated)
     }
 
     /// Root mean square distance of the agreeing photographs, in plan and in height, metres.
     fn rms_m(&self) -> [f64; 2] {
-        let ties = self.agreeing(&vec![Vector3::zeros(); self.stated.len()]);
-        let off = |tie: &Tie| tie.off(self.similarity, 0.0);
-        let sum = ties.iter().map(off).fold([0.0; 2], |[plan, height], d| {
-            [plan + d.xy().norm_squared(), height + d.z * d.z]
-        });
+        let ties = self.ties(None, false);
+        let rms = |square: &dyn Fn(&Vector3<f64>) -> f64, count: usize| {
+            let off = ties
+                .iter()
+                .map(|tie| square(&tie.off(self.similarity, 0.0)));
+            (off.sum::<f64>() / count.max(1) as f64).sqrt()
+        };
         let heights = ties.iter().filter(|tie| tie.known == KnownOf::All).count();
-        [(sum[0], ties.len()), (sum[1], heights)]
-            .map(|(sum, count)| (sum / count.max(1) as f64).sqrt())
+        let plan = rms(&|d| d.xy().norm_squared(), ties.len());
+        [plan, rms(&|d| d.z * d.z, heights)]
     }
 
-    /// The lag, and the positions without it where it is larger than its noise; `None` where the
-    /// flight does not tell.
-    fn lag(&self) -> Option<(Lag, Vec<StatedPose>)> {
-        let (velocities, unit) = self.velocities();
-        let ties = self.ties(&velocities);
-        let held = self.found.is_levelled.then_some(Held::Up);
-        let mut at = (self.similarity.clone(), 0.0);
-        let mut agreeing = Vec::new();
-        // The second time the lag is no longer among the residuals.
-        for _ in 0..2 {
-            let square = |tie: &Tie| (tie.off(&at.0, at.1) / tie.sigma_m).norm_squared();
-            let mut lengths: Vec<f64> = ties.iter().map(|tie| square(tie).sqrt()).collect();
-            let loss = Loss::Cauchy(2.0 * math::median(&mut lengths)?.max(0.1));
-            let next = fitted(&at.0, &ties, held, loss)?;
-            at = next;
-            let square = |tie: &Tie| (tie.off(&at.0, at.1) / tie.sigma_m).norm_squared();
-            agreeing = (ties.iter())
-                .filter(|tie| loss.weight(square(tie)) > 0.25)
-                .cloned()
-                .collect();
-        }
-        let (similarity, lag) = at;
-        let sigma = worth(&agreeing, &similarity, lag, held)?.lag;
-        let is_applied = lag.abs() > LARGEST_RESIDUAL_SIGMAS * sigma;
-        let moved_m: Vec<Vector3<f64>> = match is_applied {
-            true => velocities.iter().map(|v| v * lag).collect(),
-            false => Vec::new(),
+    /// What scale and level by these positions are worth, from which a lag was taken out or not;
+    /// what they do not level the angles do.
+    fn worth(
+        &self,
+        velocities: Option<&[Vector3<f64>]>,
+        angles: &AnglesFinding,
+    ) -> Option<FrameSigma> {
+        let free = Free {
+            up: !self.found.is_levelled,
+            lag: velocities.is_some(),
         };
-        let without = self.stated.iter().enumerate().map(|(photo, stated)| {
-            let moved = moved_m.get(photo).copied().unwrap_or_default();
-            StatedPose {
-                position: stated.position.map(|p| p + moved),
-                lacks_height: stated.lacks_height || self.heights == 0,
-                ..stated.clone()
-            }
-        });
-        let without = without.collect();
-        let lag = Lag {
-            lag,
-            sigma,
-            unit: unit.to_owned(),
-            is_applied,
-            before_m: self.found.rms_m,
-            after_m: self.found.rms_m,
-            moved_m,
-        };
-        Some((lag, without))
-    }
-
-    /// What scale and level by these positions are worth; where they do not give the level, what
-    /// the angles make of it.
-    fn worth(&self, has_lag: bool, angles: &AnglesFinding) -> Option<FrameSigma> {
-        let velocities = match has_lag {
-            true => self.velocities().0,
-            false => vec![Vector3::zeros(); self.stated.len()],
-        };
-        let held = match (has_lag, self.found.is_levelled) {
-            (true, true) => Some(Held::Up),
-            (true, false) => None,
-            (false, true) => Some(Held::LagAndUp),
-            (false, false) => Some(Held::Lag),
-        };
-        let own = worth(&self.agreeing(&velocities), self.similarity, 0.0, held)?.frame;
+        let own = worth(&self.ties(velocities, false), self.similarity, 0.0, free)?.frame;
         let by_angles = angles.by_angles.as_ref().map(|angles| angles.sigma());
-        Some(match self.found.is_levelled {
-            true => FrameSigma::of(Some(own.scale()), by_angles),
-            false => own,
+        Some(match free.up {
+            true => own,
+            false => FrameSigma::of(Some(own.scale()), by_angles),
         })
     }
 }

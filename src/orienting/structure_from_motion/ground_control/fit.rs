@@ -15,7 +15,7 @@ use crate::orienting::structure_from_motion::random::Random;
 use crate::orienting::structure_from_motion::resection::linearised;
 use crate::orienting::structure_from_motion::similarity::Similarity;
 use crate::orienting::structure_from_motion::similarity_fit::{
-    Held, KnownOf, Tie, fitted as adjusted, worth,
+    Free, KnownOf, Tie, fitted as adjusted, worth,
 };
 use crate::orienting::structure_from_motion::triangulation::{
     LARGEST_RESIDUAL_SIGMAS, triangulate,
@@ -42,6 +42,12 @@ const LOSS: Loss = Loss::Cauchy(2.0);
 
 /// Median length of a residual of three normal components, in their standard deviation.
 const MAXWELL_MEDIAN: f64 = 1.538_17;
+
+/// Control points have no lag.
+const FREE: Free = Free {
+    up: true,
+    lag: false,
+};
 
 /// A point that two rays or more see, with its place in the block and on the map.
 struct Usable {
@@ -138,7 +144,7 @@ pub(super) fn fitted(block: &Block, marks: &Marks, control: &GroundControl) -> R
             .map(|u| LOSS.cost(length(u) * length(u)))
             .sum(),
         tilt_sigma: tilt_sigma(&level, noise_m),
-        sigma: worth(&agreeing, &similarity, 0.0, Some(Held::Lag)).map(|worth| worth.frame),
+        sigma: worth(&agreeing, &similarity, 0.0, FREE).map(|worth| worth.frame),
         similarity,
         points,
     })
@@ -349,7 +355,7 @@ fn robust_similarity(block: &Block, points: &mut [Usable]) -> Option<Similarity>
     }
     weigh(points, &best);
     let ties: Vec<Tie> = points.iter().map(|u| u.tie.clone()).collect();
-    let (found, _) = adjusted(&best, &ties, Some(Held::Lag), LOSS)?;
+    let (found, _) = adjusted(&best, &ties, FREE, LOSS)?;
     weigh(points, &found);
     Some(found)
 }
@@ -377,15 +383,12 @@ fn upright(block: &Block, points: &[Usable]) -> Option<Similarity> {
 pub(in super::super) fn rms_m<'a>(
     points: impl Iterator<Item = &'a ControlResidual>,
 ) -> [Option<f64>; 2] {
-    let (mut squares, mut counts) = ([0.0; 2], [0usize; 2]);
-    for [x, y, z] in points.filter_map(|p| p.residual_m) {
-        for (part, square) in [x.zip(y).map(|(x, y)| x * x + y * y), z.map(|z| z * z)]
-            .into_iter()
-            .enumerate()
-        {
-            squares[part] += square.unwrap_or(0.0);
-            counts[part] += usize::from(square.is_some());
-        }
-    }
-    [0, 1].map(|i| (counts[i] > 0).then(|| (squares[i] / counts[i] as f64).sqrt()))
+    let seen: Vec<[Option<f64>; 3]> = points.filter_map(|p| p.residual_m).collect();
+    let rms = |square: &dyn Fn(&[Option<f64>; 3]) -> Option<f64>| {
+        let squares: Vec<f64> = seen.iter().filter_map(square).collect();
+        (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+    };
+    let square = |d: Option<f64>| d.map(|d| d * d);
+    let plan = rms(&|[x, y, _]| Some(square(*x)? + square(*y)?));
+    [plan, rms(&|[_, _, z]| square(*z))]
 }

@@ -125,7 +125,8 @@ fn scale_and_level_are_worth_what_they_scatter_by() {
         stated_sigmas.push(sigma.scale());
     }
     let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
-    let squares: Vec<f64> = scales.iter().map(|s| (s - mean(&scales)).powi(2)).collect();
+    let square = |s: &f64| (s - mean(&scales)) * (s - mean(&scales));
+    let squares: Vec<f64> = scales.iter().map(square).collect();
     let ratio = mean(&stated_sigmas) / mean(&squares).sqrt();
     assert!((ratio - 1.0).abs() < 0.2, "{ratio}");
 }
