@@ -7,13 +7,12 @@
 //! photograph_head    what of a photograph is read to plan with it
 //! image_orientation  interior and exterior orientation of one image: what every reader returns
 //! angles             omega, phi, kappa and their units
-//! frame_sigma        what a frame's scale and level are worth
 //! geodesy            the ellipsoid, and the anchor of a local frame on it
 //! formats            the readers, one file for each format; how to add one
 //! format             the list of formats, in the order of preference
 //! detect             what kind of file it is
 //! unread             formats that are known but not read, and what to do instead
-//! reference          EPSG code of the coordinate reference system
+//! reference          EPSG code of the coordinate reference system; what a frame is worth
 //! units              what coordinates of a system count: metres, feet, degrees
 //! epsg               what the codes stand for
 //! well_known         systems that are written out
@@ -46,7 +45,6 @@ pub(crate) mod detect;
 mod epsg;
 mod format;
 mod formats;
-mod frame_sigma;
 mod geodesy;
 mod image_orientation;
 mod input_file;
@@ -69,7 +67,6 @@ pub use detect::{FileKind, detect};
 pub(crate) use detect::{GCP_LIST, GEO_LIST, POINT_CLOUD, is_ascii_grid};
 pub(crate) use epsg::{TransverseMercator, is_geographic, plane_of};
 pub use format::Format;
-pub use frame_sigma::FrameSigma;
 pub(crate) use geodesy::{A_M, geocentric_of, geographic_of};
 pub use geodesy::{Anchor, MOST_DATUM_M};
 pub use image_orientation::{Crop, Orientation};
@@ -79,7 +76,7 @@ pub use metric_frame::to_metric_frame;
 pub use needed::{BLOCK_BYTES, FileSource, Needed};
 pub(crate) use path_name::{NameEnding, NameFit, PathName, images_called};
 pub use photograph_head::PhotographHead;
-pub use reference::{StatedReference, epsg_of};
+pub use reference::{FrameSigma, StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};
 pub use units::{
     LinearUnit, PlanUnit, SystemUnits, height_unit_of_code, linear_unit_of_code, units_of,

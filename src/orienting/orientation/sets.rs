@@ -8,10 +8,9 @@ use super::formats::xml::{blocks, metashape};
 use super::formats::{
     bundles, colmap, colmap_binary, inpho, matrices, micmac, patb, photogrammetric, projection,
 };
-use super::frame_sigma::FrameSigma;
 use super::image_orientation::Orientation;
 use super::input_file::InputFile;
-use super::reference::{self, StatedReference};
+use super::reference::{self, FrameSigma, StatedReference};
 use crate::base::error::Result;
 use crate::photographs::raster::image_header;
 

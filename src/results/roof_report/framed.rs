@@ -2,7 +2,7 @@
 //! for all of it alike, and independently of how the building was measured.
 //!
 //! ```text
-//! length L, height: s L     area A: 2 s A     volume V: 3 s V     slope: t     azimuth: t / tan(slope)
+//! length, height: s L   area: 2 s A   volume: 3 s V   slope: t   azimuth: t / tan(slope)
 //! ```
 //!
 //! s is the standard deviation of the scale as a share, t that of the level as an angle; both add

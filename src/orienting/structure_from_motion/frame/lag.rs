@@ -35,8 +35,8 @@ pub struct Lag {
     pub unit: String,
     /// Is it larger than its noise, and taken out of the positions?
     pub is_applied: bool,
-    /// Root mean square distance of the positions as they are stated, in plan and in height, metres:
-    /// of those that agree with the lag taken out.
+    /// Root mean square distance of the positions as they are stated, in plan and in height,
+    /// metres: of those that agree with the lag taken out.
     pub before_m: [f64; 2],
     /// The same with the lag taken out; as before where it was not.
     pub after_m: [f64; 2],
