@@ -145,17 +145,24 @@ pub(super) struct CheckArgs {
 /// The arguments of `orient`.
 #[derive(Args)]
 pub(super) struct OrientArgs {
-    /// Folder or .zip archive with three or more photographs that overlap by about two thirds.
+    /// Folder or .zip archive with three or more photographs that overlap by about two thirds; with
+    /// --check and without --out the folder of a finished orientation.
     pub photos: PathBuf,
     /// Folder for cameras.txt, images.txt, points3D.txt and the report; made if missing.
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "check")]
+    pub out: Option<PathBuf>,
+    /// Print the control sheet: residuals at control points, check points and stated positions,
+    /// what scale and level are worth, the lag of the receiver. Without --out that of a finished
+    /// orientation.
+    #[arg(long)]
+    pub check: bool,
     /// Focal length of all photographs, pixels, where their headers state none or a wrong one; the
     /// adjustment refines it.
     #[arg(long, value_name = "PX", value_parser = parse_positive)]
     pub focal: Option<f64>,
     /// Ground control points as OpenDroneMap's gcp_list.txt, which give the frame; by default a
-    /// file of that name among the photographs.
+    /// file of that name among the photographs. A word behind a name says what the point is for:
+    /// check (it is kept out of the fit), plan or height (only that is known).
     #[arg(long, value_name = "FILE")]
     pub gcp: Option<PathBuf>,
     /// Read control points or angles that a usual mistake explains (axes exchanged, rows from

@@ -1,13 +1,14 @@
-//! `ridgeline orient`: photographs in, their orientation out.
+//! `ridgeline orient`: photographs in, their orientation out; with `--check` the control sheet.
 
 use std::fs;
+use std::path::Path;
 use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::base::execution::progress::{Listener, with_listener};
 use ridgeline::orienting::orientation::{FileSource, InputFile, Needed};
 use ridgeline::orienting::structure_from_motion::{
-    FeatureOptions, GroundControl, OrientOptions, Oriented, orient as orient_photos,
+    ControlSheet, FeatureOptions, GroundControl, OrientOptions, Oriented, orient as orient_photos,
 };
 
 use super::args::OrientArgs;
@@ -20,14 +21,18 @@ const BAR_STEPS: f64 = 1000.0;
 
 /// Reads the photographs, orients them and writes COLMAP's text model and the report.
 pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
-    fs::create_dir_all(&args.out).map_err(|e| {
+    let Some(out) = &args.out else {
+        print!("{}", finished_sheet(&args.photos)?);
+        return Ok(());
+    };
+    fs::create_dir_all(out).map_err(|e| {
         Failure::Input(format!(
             "{}: cannot be made: {e}; give --out a folder that can be written",
-            args.out.display()
+            out.display()
         ))
     })?;
     input::set_threads(args.threads);
-    let (mut read, seen) = files::read_scene(&args.photos, &args.out)?;
+    let (mut read, seen) = files::read_scene(&args.photos, out)?;
     for notice in seen.notices() {
         eprintln!("warning: {notice}");
     }
@@ -55,17 +60,44 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
     };
     let oriented = oriented(&mut read, &options, &seen)?;
     eprintln!("{seen}");
-    files::write_all(&args.out, &oriented.files())?;
-    print!("{}", oriented.report.to_text());
+    files::write_all(out, &oriented.files())?;
+    let report = &oriented.report;
+    match args.check {
+        true => print!("{}", sheet(&report.to_json()).unwrap_or_default()),
+        false => print!("{}", report.to_text()),
+    }
     let epsg =
         (oriented.report.epsg).map_or_else(String::new, |code| format!(" --crs EPSG:{code}"));
     println!(
         "written to {}; go on with: ridgeline reconstruct {} --orientation {}{epsg} --out MODEL",
-        args.out.display(),
+        out.display(),
         args.photos.display(),
-        args.out.display()
+        out.display()
     );
     Ok(())
+}
+
+/// The report of an orientation, in its folder.
+const REPORT: &str = "orientation.json";
+
+/// The control sheet of a report as JSON.
+fn sheet(json: &str) -> Option<String> {
+    Some(ControlSheet::of_json(json)?.to_text())
+}
+
+/// That of an orientation that is finished: its folder, or the report itself.
+fn finished_sheet(path: &Path) -> Result<String, Failure> {
+    let path = match path.is_dir() {
+        true => path.join(REPORT),
+        false => path.to_owned(),
+    };
+    let refused = |problem: String| {
+        let advice = "give the folder that `ridgeline orient PHOTOS --out DIR` wrote, or photographs \
+                      with --out";
+        Failure::Input(format!("{}: {problem}; {advice}", path.display()))
+    };
+    let json = fs::read_to_string(&path).map_err(|e| refused(format!("cannot be read: {e}")))?;
+    sheet(&json).ok_or_else(|| refused("is no report of an orientation".to_owned()))
 }
 
 /// Orients all photographs of a folder under a progress bar; `seen` counts its files. Of the

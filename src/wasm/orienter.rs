@@ -84,7 +84,9 @@ struct OrientationReport<'a> {
     is_metric: bool,
     /// Its EPSG code, where that is known.
     epsg: Option<u32>,
-    /// Ground control points, where they give the frame.
+    /// What scale and level of the frame are worth, and the lag of the receiver, a sentence each.
+    worth: Vec<String>,
+    /// Ground control points and check points, where they give the frame.
     control: &'a [ControlResidual],
     /// World points.
     points: usize,
@@ -348,6 +350,7 @@ impl Orienter {
             frame: &report.frame,
             is_metric: report.is_metric,
             epsg: report.epsg,
+            worth: report.worth(),
             control: &report.control,
             points: report.points,
             rays_a_point: report.rays_a_point,

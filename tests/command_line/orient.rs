@@ -52,6 +52,11 @@ impl Photographs {
     /// A list of control points in the manner of OpenDroneMap; of the one in the middle the
     /// position is so many metres too far east.
     fn control(&self, wrong_m: f64) -> String {
+        self.control_with_roles(wrong_m, |_| "")
+    }
+
+    /// The same with a role behind each name.
+    fn control_with_roles(&self, wrong_m: f64, role: impl Fn(&str) -> &'static str) -> String {
         let places = [
             ("north", [-8.0, 7.0, 0.0]),
             ("south", [9.0, -7.0, 0.0]),
@@ -69,7 +74,9 @@ impl Photographs {
                 }
                 let wrong = if name == "middle" { wrong_m } else { 0.0 };
                 let (e, n) = (x + ON_MAP.x + wrong, y + ON_MAP.y);
-                writeln!(text, "{e} {n} {z} {} {} d{i}.png {name}", seen.x, seen.y).unwrap();
+                let role = role(name);
+                let mark = format!("{} {} d{i}.png {name} {role}", seen.x, seen.y);
+                writeln!(text, "{e} {n} {z} {mark}").unwrap();
             }
         }
         text
@@ -180,6 +187,48 @@ fn control_points_give_the_map_and_a_wrong_one_is_named() {
     assert!(
         printed.contains("images and orientation agree"),
         "{printed}"
+    );
+}
+
+#[test]
+fn the_control_sheet_is_that_of_the_run_and_of_what_it_wrote() {
+    let photographs = Photographs::new();
+    let role = |name: &str| match name {
+        "middle" => "check",
+        "pole" => "height",
+        _ => "",
+    };
+    let list = photographs.photos().join("gcp_list.txt");
+    fs::write(&list, photographs.control_with_roles(2.0, role)).unwrap();
+    let options = ["--features", "800", "--focal", "216", "--check"];
+    let printed = crate::printed(&photographs.orient(&options));
+    for words in [
+        "5 of 5 ground control points, rms ",
+        "; check points: 1, rms 2.0",
+        "a length of 10 m is known to +- 0.0",
+        "control points: 5 of 5 agree, rms ",
+        "check points: 0 of 1 agree, rms 2.0",
+        "check point middle is -2.0",
+        "from where the control points put it",
+    ] {
+        assert!(printed.contains(words), "{words}: {printed}");
+    }
+    let pole = printed.lines().find(|line| line.starts_with("pole"));
+    assert!(
+        pole.is_some_and(|line| line.contains("        -        -")),
+        "{printed}"
+    );
+    let out = photographs.out();
+    let check =
+        |folder: &std::path::Path| run(["orient".as_ref(), folder.as_os_str(), "--check".as_ref()]);
+    let sheet = crate::printed(&check(&out));
+    assert!(printed.starts_with(&sheet), "{sheet}{printed}");
+    let refused = check(&photographs.photos());
+    let message = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{message}");
+    assert!(
+        message.contains("orientation.json: cannot be read"),
+        "{message}"
     );
 }
 

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
-use ridgeline::orienting::orientation::Anchor;
+use ridgeline::orienting::orientation::{Anchor, FrameSigma};
+use ridgeline::orienting::scene::{Scene, Survey};
 use ridgeline::results::export::ReportedModel;
 use ridgeline::results::roof_report::SetbackRule;
 use ridgeline::roofs::model::{
@@ -92,6 +93,69 @@ fn a_folder_makes_the_same_report_again() {
         for (file, bytes) in again {
             assert!(files[&file] == bytes, "{name}: {file}");
         }
+    }
+}
+
+/// The standard deviation of a sum of two independent errors.
+fn both_sigmas(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
+}
+
+#[test]
+fn what_the_frame_is_worth_is_in_every_standard_deviation_and_only_where_it_is_stated() {
+    let frame = FrameSigma {
+        length_of_10_m: Some(0.05),
+        height_over_10_m: Some(0.02),
+    };
+    let framed = Scene {
+        survey: Survey {
+            frame_sigma: Some(frame),
+            ..Survey::default()
+        },
+        ..scene()
+    };
+    for (name, model, _) in known_models() {
+        let [without, with] = [scene(), framed.clone()].map(|s| files_of(&s, &model));
+        let stated = |files: &BTreeMap<String, Vec<u8>>, file: &str| {
+            String::from_utf8_lossy(&files[file]).contains("frame")
+        };
+        for file in ["model.city.json", "roofs.json", "roof_report.html"] {
+            assert!(
+                !stated(&without, file) && stated(&with, file),
+                "{name}: {file}"
+            );
+        }
+        let page = String::from_utf8_lossy(&with["roof_report.html"]);
+        assert!(page.contains("10 m is known to ± 0.050 m by the scale"));
+        let read = ReportedModel::read(&with["model.city.json"]).unwrap();
+        let again = read.files(&SetbackRule::built_in());
+        assert!(
+            again.iter().all(|(file, bytes)| with[file] == *bytes),
+            "{name}"
+        );
+        for (table, value, sigma, dimensions) in [
+            ("buildings.csv", "area_m2", "area_sigma_m2", 2.0),
+            ("buildings.csv", "volume_m3", "volume_sigma_m3", 3.0),
+            ("facets.csv", "plan_area_m2", "plan_area_sigma_m2", 2.0),
+            ("facets.csv", "highest_m", "highest_sigma_m", 1.0),
+            ("edges.csv", "length_m", "length_sigma_m", 1.0),
+        ] {
+            for (own, both) in rows(&without[table]).iter().zip(rows(&with[table])) {
+                assert_eq!(own[value], both[value]);
+                let added = 0.005 * dimensions * number(own, value);
+                let expected = both_sigmas(number(own, sigma), added);
+                let off = number(&both, sigma) - expected;
+                assert!(
+                    off.abs() < 2e-3 * expected.max(1.0),
+                    "{name}: {sigma}: {off}"
+                );
+            }
+        }
+        let slope = |files: &BTreeMap<String, Vec<u8>>| {
+            number(&rows(&files["facets.csv"])[0], "slope_sigma_deg")
+        };
+        let expected = both_sigmas(slope(&without), 0.002f64.to_degrees());
+        assert!((slope(&with) - expected).abs() < 2e-3, "{name}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! The roofs as JSON: the schema that is published, and places on the Earth.
 
-use ridgeline::orienting::orientation::Anchor;
+use ridgeline::orienting::orientation::{Anchor, FrameSigma};
 use ridgeline::orienting::scene::{Scene, Survey};
 use serde_json::Value;
 
@@ -44,7 +44,11 @@ fn every_file_is_as_its_schema_says() {
             .map(|e| format!("{}: {e}", e.instance_path))
             .collect()
     };
-    let [utm, local] = placed();
+    let [utm, mut local] = placed();
+    local.survey.frame_sigma = Some(FrameSigma {
+        length_of_10_m: Some(0.05),
+        height_over_10_m: None,
+    });
     for scene in [scene(), utm, local] {
         for (name, model, _) in known_models() {
             let bytes = &files_of(&scene, &model)["roofs.json"];

@@ -12,7 +12,7 @@
 //! format             the list of formats, in the order of preference
 //! detect             what kind of file it is
 //! unread             formats that are known but not read, and what to do instead
-//! reference          EPSG code of the coordinate reference system
+//! reference          EPSG code of the coordinate reference system; what a frame is worth
 //! units              what coordinates of a system count: metres, feet, degrees
 //! epsg               what the codes stand for
 //! well_known         systems that are written out
@@ -76,7 +76,7 @@ pub use metric_frame::to_metric_frame;
 pub use needed::{BLOCK_BYTES, FileSource, Needed};
 pub(crate) use path_name::{NameEnding, NameFit, PathName, images_called};
 pub use photograph_head::PhotographHead;
-pub use reference::{StatedReference, epsg_of};
+pub use reference::{FrameSigma, StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};
 pub use units::{
     LinearUnit, PlanUnit, SystemUnits, height_unit_of_code, linear_unit_of_code, units_of,

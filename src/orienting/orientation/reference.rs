@@ -1,4 +1,7 @@
-//! The coordinate reference system that files name, as its EPSG code.
+//! The coordinate reference system that files name, as its EPSG code; what the scale and the level
+//! of a frame are worth.
+
+use serde::{Deserialize, Serialize};
 
 use super::epsg::is_geographic;
 use super::geodesy::Anchor;
@@ -17,12 +20,59 @@ pub enum StatedReference {
     Local(String),
 }
 
+/// Standard deviations of a frame as a whole: every length is too long by the same share, every
+/// slope too steep by the same angle. What measuring adds is independent of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrameSigma {
+    /// Of a length of 10 m by the scale, metres; `None` where nothing tells.
+    pub length_of_10_m: Option<f64>,
+    /// Of a difference of height over 10 m of level distance by the level, metres; `None` where
+    /// nothing tells.
+    pub height_over_10_m: Option<f64>,
+}
+
+impl FrameSigma {
+    /// From those of the logarithm of the scale and of the worst tilt, radians.
+    pub(crate) fn of(scale: Option<f64>, tilt: Option<f64>) -> Self {
+        let over_10_m = |sigma: Option<f64>| sigma.map(|s| 10.0 * s).filter(|s| s.is_finite());
+        Self {
+            length_of_10_m: over_10_m(scale),
+            height_over_10_m: over_10_m(tilt),
+        }
+    }
+
+    /// Of the scale, as a share of it; 0 where nothing tells.
+    pub fn scale(&self) -> f64 {
+        self.length_of_10_m.unwrap_or(0.0) / 10.0
+    }
+
+    /// Of the worst tilt, radians; 0 where nothing tells.
+    pub fn tilt(&self) -> f64 {
+        self.height_over_10_m.unwrap_or(0.0) / 10.0
+    }
+
+    /// In words.
+    pub fn words(&self) -> String {
+        let scale = match self.length_of_10_m {
+            Some(sigma) => format!("a length of 10 m is known to +- {sigma:.3} m by the scale"),
+            None => "nothing tells how well the scale is known".to_owned(),
+        };
+        let level = match self.height_over_10_m {
+            Some(sigma) => {
+                format!("a height over 10 m of level distance to +- {sigma:.3} m by the level")
+            }
+            None => "nothing tells how level it is".to_owned(),
+        };
+        format!("{scale}, {level}")
+    }
+}
+
 /// The report that `orient` writes beside its model: COLMAP's text has no room for a place.
 pub(super) const OF_ORIENT: &str = "orientation.json";
 
 /// What such a report says of the frame of the model.
 pub(super) fn of_orient(text: &str) -> StatedReference {
-    #[derive(serde::Deserialize)]
+    #[derive(Deserialize)]
     struct Report {
         is_metric: bool,
         anchor: Option<Anchor>,
@@ -43,6 +93,15 @@ pub(super) fn of_orient(text: &str) -> StatedReference {
         }) => StatedReference::System(code),
         Ok(_) | Err(_) => StatedReference::None,
     }
+}
+
+/// What such a report says that the frame's scale and level are worth.
+pub(super) fn frame_sigma_of_orient(text: &str) -> Option<FrameSigma> {
+    #[derive(Deserialize)]
+    struct Report {
+        frame_sigma: Option<FrameSigma>,
+    }
+    serde_json::from_str::<Report>(text).ok()?.frame_sigma
 }
 
 /// EPSG code of the system of an INPHO project.

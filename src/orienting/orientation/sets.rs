@@ -10,7 +10,7 @@ use super::formats::{
 };
 use super::image_orientation::Orientation;
 use super::input_file::InputFile;
-use super::reference::{self, StatedReference};
+use super::reference::{self, FrameSigma, StatedReference};
 use crate::base::error::Result;
 use crate::photographs::raster::image_header;
 
@@ -64,6 +64,13 @@ impl OrientationSet {
             ),
             _ => StatedReference::None,
         }
+    }
+
+    /// What the files say that the scale and the level of their frame are worth.
+    pub fn frame_sigma(&self, inputs: &[InputFile]) -> Option<FrameSigma> {
+        let is_colmap = matches!(self.format, Format::Colmap | Format::ColmapBinary);
+        let report = self.files.get(2).filter(|_| is_colmap)?;
+        reference::frame_sigma_of_orient(&inputs[*report].text())
     }
 
     /// Reads the orientations of the set; rounded rotations are made orthonormal. Warnings are

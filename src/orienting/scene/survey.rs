@@ -4,7 +4,9 @@ use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 
 use crate::base::agreement::AgreementReport;
-use crate::orienting::orientation::{Anchor, TransverseMercator, geocentric_of, geographic_of};
+use crate::orienting::orientation::{
+    Anchor, FrameSigma, TransverseMercator, geocentric_of, geographic_of,
+};
 
 /// How the description of a local frame begins.
 const EAST_NORTH_UP: &str = "east, north, up from longitude";
@@ -16,6 +18,8 @@ pub struct Survey {
     pub epsg: Option<u32>,
     /// Geodetic position of the world's origin, for a world of x east, y north, z up.
     pub anchor: Option<Anchor>,
+    /// What scale and level of the world are worth, where the orientation states it.
+    pub frame_sigma: Option<FrameSigma>,
     /// How far each view is shifted against the others, where enough is matched.
     pub shifts: Vec<ViewShift>,
     /// How each view was adjusted to its matched lines; empty where that was not asked for.

@@ -12,7 +12,7 @@
 //!
 //! block          photographs, cameras, tracks: what the steps above change
 //! intrinsics     f, cx, cy, k1, k2
-//! robust         estimation by likelihood; linear, random, similarity
+//! robust         estimation by likelihood; linear, random, similarity, similarity_fit
 //! ```
 //!
 //! Invariant: the same photographs give the same bytes, natively and in wasm, on any number of
@@ -34,6 +34,7 @@ mod random;
 mod resection;
 mod robust;
 mod similarity;
+mod similarity_fit;
 #[cfg(test)]
 mod tests;
 mod tracks;
@@ -43,8 +44,8 @@ mod verification;
 
 pub use block::Pose;
 pub use features::FeatureOptions;
-pub use frame::FrameBasis;
-pub use ground_control::{ControlPoint, ControlResidual, GeoList, GroundControl};
+pub use frame::{FrameBasis, Lag};
+pub use ground_control::{ControlPoint, ControlResidual, GeoList, GroundControl, Role};
 pub use intrinsics::Intrinsics;
 pub use metadata::PhotoMetadata;
 pub use orient::{
@@ -52,7 +53,8 @@ pub use orient::{
     orient,
 };
 pub use output::{
-    CameraReport, LeftOut, MeasuredLength, NotJoined, NotMeasured, OrientReport, OrientedPhoto,
-    PhotoReport, SparseModel, SparsePoint,
+    CameraReport, ControlSheet, LeftOut, MeasuredLength, NotJoined, NotMeasured, OrientReport,
+    OrientedPhoto, PhotoReport, SparseModel, SparsePoint,
 };
+pub use similarity_fit::KnownOf;
 pub use two_view::PairKind;

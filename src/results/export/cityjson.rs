@@ -16,6 +16,7 @@ use super::measured::Measured;
 use super::walls::{add_attributes, walled_solid};
 use crate::base::geometry::plan_sides;
 use crate::base::ids::FacetId;
+use crate::orienting::orientation::FrameSigma;
 use crate::orienting::scene::Scene;
 use crate::results::roof_report::{Estimate, Lengths, RoofEdgeKind};
 use crate::results::texture::{FaceTexture, TexturedModel};
@@ -26,6 +27,22 @@ use crate::roofs::solids::WRITTEN_STEP_M;
 
 /// Name of the appearance theme.
 const THEME: &str = "photographs";
+
+/// The attribute of a building that says what scale and level of the frame are worth, and its
+/// members.
+pub(super) const FRAME_SIGMA: &str = "frameSigma";
+pub(super) const LENGTH_OF_10_M: &str = "lengthOf10m";
+pub(super) const HEIGHT_OVER_10_M: &str = "heightOver10m";
+
+/// What scale and level of the frame are worth, as the file states it.
+pub(super) fn written_frame(scene: &Scene) -> Option<FrameSigma> {
+    let frame = scene.survey.frame_sigma.as_ref()?;
+    let written = |sigma: Option<f64>| sigma.map(|sigma| rounded(sigma, 6));
+    Some(FrameSigma {
+        length_of_10_m: written(frame.length_of_10_m),
+        height_over_10_m: written(frame.height_over_10_m),
+    })
+}
 
 /// The model as a CityJSON file.
 pub(super) fn city_json(
@@ -200,6 +217,12 @@ fn building_object(
     add(&mut attributes, "lowestRoofHeight", report.lowest_m);
     add(&mut attributes, "highestRoofHeight", report.highest_m);
     attributes["lengths"] = lengths(&report.lengths);
+    if let Some(frame) = written_frame(scene) {
+        attributes[FRAME_SIGMA] = json!({
+            LENGTH_OF_10_M: frame.length_of_10_m,
+            HEIGHT_OVER_10_M: frame.height_over_10_m,
+        });
+    }
     json!({
         "type": "Building",
         "attributes": attributes,

@@ -1,9 +1,21 @@
 //! What several files say of roofs in numbers.
 
 use crate::base::ids::FacetId;
+use crate::orienting::orientation::FrameSigma;
 use crate::orienting::scene::Scene;
 use crate::results::roof_report::{BuildingReport, FacetReport, roof_report, views_of_facets};
 use crate::roofs::model::RoofModel;
+
+/// Buildings in a frame that is known as well as this, where that is stated.
+pub(super) fn in_frame(
+    buildings: Vec<BuildingReport>,
+    frame: Option<&FrameSigma>,
+) -> Vec<BuildingReport> {
+    match frame {
+        Some(frame) => buildings.into_iter().map(|b| b.in_frame(frame)).collect(),
+        None => buildings,
+    }
+}
 
 /// The measures of a model, and the photographs that show it.
 pub(super) struct Measured {
@@ -19,7 +31,7 @@ impl Measured {
             names.collect()
         };
         Self {
-            buildings: roof_report(model, &[]),
+            buildings: in_frame(roof_report(model, &[]), scene.survey.frame_sigma.as_ref()),
             photographs: (views_of_facets(scene, model).into_iter())
                 .map(names)
                 .collect(),

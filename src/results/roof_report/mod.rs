@@ -4,6 +4,7 @@
 //! ```text
 //! edges           kinds of edges, from the facets alone
 //! estimate        a number and its standard deviation
+//! framed          what scale and level of the frame add to standard deviations
 //! straight_sides  corners in plan, and the straight sides between them
 //! shape           a building as a function of uncertain numbers, whose errors are propagated
 //! setbacks        rules of what is kept clear along edges
@@ -17,6 +18,7 @@
 
 mod edges;
 mod estimate;
+mod framed;
 mod photographs;
 mod setbacks;
 mod shape;

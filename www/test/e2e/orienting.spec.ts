@@ -82,6 +82,8 @@ test("ground control points give the map, and a wrong one is named; files come i
   const points = report.getByTestId("control-points");
   await expect(points.getByRole("row", { name: /^middle/ })).toContainText("no, it disagrees");
   await expect(points.getByRole("row", { name: /^north/ })).toContainText("8 of 8");
+  await expect(report).toContainText(/A length of 10 m is known to ± 0\.0\d+ m by the scale/);
+  await expect(report.getByTestId("residual-plan")).toContainText(/drawn \d+ times as long/);
   // They give the scale: a length is only measured.
   await expect(report.getByLabel("metres")).toHaveCount(0);
   expect(await axeFindings(page)).toEqual([]);

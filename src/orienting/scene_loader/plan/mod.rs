@@ -206,6 +206,7 @@ impl Plan {
         self.survey = Survey {
             epsg: options.epsg.or(epsg),
             anchor,
+            frame_sigma: set.frame_sigma(files),
             ..Survey::default()
         };
         OrientationCandidate::split(&mut self.candidates, index, &taken.groups);

@@ -292,6 +292,12 @@ fn the_place_that_orient_finds_is_read_beside_its_model() {
         assert_eq!(survey.anchor.map(|anchor| anchor.lon_deg), lon, "{text}");
         assert_eq!(survey.epsg, epsg, "{text}");
     }
+    let sigma = "{\"frame_sigma\":{\"length_of_10_m\":0.03,\"height_over_10_m\":null},";
+    let worth = report("null", "null", true).replacen('{', sigma, 1);
+    let found = with(&[("colmap/orientation.json", worth.as_bytes())]);
+    let sigma = load_scene(&found, &all()).unwrap().survey.frame_sigma;
+    let sigma = sigma.map(|s| (s.length_of_10_m, s.height_over_10_m));
+    assert_eq!(sigma, Some((Some(0.03), None)));
     // Footprints with latitude before longitude lie there when these are exchanged.
     let [low, high] = [-4e-5, 4e-5].map(|by| format!("[{},{}]", 49.0 + by, 8.4 + by));
     let houses = format!(

@@ -14,12 +14,14 @@
 //! stated     what is stated of photographs, and where the block has them
 //! places     stated positions beside those of the block, and the similarity between them
 //! positions  which similarity to stated positions can be true
+//! lag        positions that are late along the flight, and what they are worth
 //! vertical   up by angles, up by the plane of the points
 //! checks     whether a placement can be true
 //! words      what is doubtful of all that, for people
 //! ```
 
 mod checks;
+mod lag;
 mod places;
 mod positions;
 mod stated;
@@ -31,18 +33,20 @@ mod words;
 use nalgebra::{Rotation3, Vector3};
 
 pub(super) use self::checks::{ByControl, Doubt, Placement, doubts, tilt_sigma};
+pub use self::lag::Lag;
+use self::lag::Stated;
 pub(super) use self::places::RECEIVER_SIGMA_M;
 use self::positions::by_true_positions;
 pub(super) use self::stated::{StatedPose, spread};
 use self::stated::{centers, points};
-pub(super) use self::vertical::rotation_of_angles;
-use self::vertical::{AnglesFinding, turn_to_up, up_of_angles, up_of_plane};
+use self::vertical::{AnglesFinding, up_of_angles, up_of_plane};
+pub(super) use self::vertical::{rotation_of_angles, turn_to_up};
 pub(super) use self::words::{NOTHING_STATED, OFFER};
 use super::block::Block;
 use super::ground_control::ControlResidual;
 use super::similarity::Similarity;
 use crate::base::geometry::mean_point;
-use crate::orienting::orientation::{Anchor, LinearUnit, linear_unit_of_code};
+use crate::orienting::orientation::{Anchor, FrameSigma, LinearUnit, linear_unit_of_code};
 
 /// What the frame of the world rests on.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,8 +63,10 @@ pub enum FrameBasis {
         offset: [f64; 3],
         /// The points.
         points: Vec<ControlResidual>,
-        /// Root mean square residual of the agreeing ones, in plan and in height, metres.
+        /// Root mean square residual of the agreeing control points, in plan and in height, metres.
         rms_m: [f64; 2],
+        /// What scale and level are worth.
+        sigma: Option<FrameSigma>,
     },
     /// Stated positions.
     Positions {
@@ -77,6 +83,10 @@ pub enum FrameBasis {
         /// Is the vertical, or the turn about the line of flight, from the plane of the points or
         /// from angles?
         is_levelled: bool,
+        /// By how much they are behind the photographs along the flight, where that tells.
+        lag: Option<Lag>,
+        /// What scale and level are worth.
+        sigma: Option<FrameSigma>,
     },
     /// Stated angles; the scale is arbitrary.
     Angles {
@@ -116,34 +126,10 @@ pub(super) fn to_frame(
     let angles = up_of_angles(block, stated, applies_fix);
     let mut notes = words::of_angles(&angles, applies_fix, paths);
     if let Some(anchor) = anchor {
-        let (found, mistake) = by_true_positions(block, stated, &anchor, &angles);
-        notes.extend(mistake.map(words::of_mistake));
-        match found {
-            Ok((similarity, found, doubt)) => {
-                similarity.apply(block);
-                let [stated, heights] = found.stated;
-                notes.extend(doubt.map(|doubt| words::of_heights(&doubt)));
-                notes.extend(words::of_contradicted(&found.contradicted, paths));
-                // Heights that do not fit are none.
-                let heights = if doubt.is_some() { 0 } else { heights };
-                if heights == 0 {
-                    let to_ground = Similarity {
-                        shift: -Vector3::z() * mean_point(&points(block)).z,
-                        ..Similarity::default()
-                    };
-                    to_ground.apply(block);
-                }
-                let basis = FrameBasis::Positions {
-                    anchor,
-                    agreeing: found.agreeing,
-                    stated,
-                    heights,
-                    rms_m: found.rms_m,
-                    is_levelled: found.is_levelled,
-                };
-                return (basis, notes);
-            }
-            Err(why) => notes.extend(words::of_no_positions(&why)),
+        let (basis, said) = to_positions(block, stated, anchor, &angles, paths);
+        notes.extend(said);
+        if let Some(basis) = basis {
+            return (basis, notes);
         }
     }
     let (up, basis) = by_vertical(block, &angles);
@@ -165,6 +151,56 @@ pub(super) fn to_frame(
     };
     similarity.apply(block);
     (basis, notes)
+}
+
+/// The same by stated positions, if they can be true.
+fn to_positions(
+    block: &mut Block,
+    stated: &[StatedPose],
+    anchor: Anchor,
+    angles: &AnglesFinding,
+    paths: &[&str],
+) -> (Option<FrameBasis>, Vec<String>) {
+    let (found, mistake) = by_true_positions(block, stated, &anchor, angles);
+    let mut notes: Vec<String> = mistake.map(words::of_mistake).into_iter().collect();
+    let (first, found, doubt) = match found {
+        Ok(found) => found,
+        Err(why) => {
+            notes.extend(words::of_no_positions(&why));
+            return (None, notes);
+        }
+    };
+    notes.extend(doubt.map(|doubt| words::of_heights(&doubt)));
+    // Heights that do not fit are none.
+    let heights = if doubt.is_some() { 0 } else { found.stated[1] };
+    let late = Stated {
+        block,
+        stated,
+        similarity: &first,
+        found: &found,
+        heights,
+    };
+    let (similarity, found, lag, sigma) = late.without_lag(angles);
+    similarity.apply(block);
+    notes.extend(words::of_contradicted(&found.contradicted, paths));
+    if heights == 0 {
+        let to_ground = Similarity {
+            shift: -Vector3::z() * mean_point(&points(block)).z,
+            ..Similarity::default()
+        };
+        to_ground.apply(block);
+    }
+    let basis = FrameBasis::Positions {
+        anchor,
+        agreeing: found.agreeing,
+        stated: found.stated[0],
+        heights,
+        rms_m: found.rms_m,
+        is_levelled: found.is_levelled,
+        lag,
+        sigma,
+    };
+    (Some(basis), notes)
 }
 
 /// The turn that makes z vertical by angles, or else by the plane of the points.

@@ -38,7 +38,7 @@ pub(super) type Placed = Result<(Similarity, Found, Option<Doubt>), NoPositions>
 
 /// The similarity that brings the block to its stated positions, with what speaks against one in
 /// space where that in plan is taken instead.
-fn by_positions(block: &Block, stated: &[StatedPose], angles: &AnglesFinding) -> Placed {
+pub(super) fn by_positions(block: &Block, stated: &[StatedPose], angles: &AnglesFinding) -> Placed {
     let places = Places::of(block, stated, None);
     let count = places.count();
     if count < FEWEST_POSITIONS {

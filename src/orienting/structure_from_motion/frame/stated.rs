@@ -15,6 +15,8 @@ pub(in super::super) struct StatedPose {
     pub lacks_height: bool,
     /// Standard deviation of the position, metres; `None` where it is not stated.
     pub sigma_m: Option<f64>,
+    /// When it was taken, seconds; they differ rightly within a month.
+    pub taken_s: Option<f64>,
     /// `cam_from_world`.
     pub rotation: Option<Rotation3<f64>>,
     /// The angles that give the rotation, degrees, pitch -90 down.

@@ -9,6 +9,8 @@ use crate::orienting::orientation::geocentric_of;
 use crate::orienting::structure_from_motion::bundle::tests::planted;
 use crate::orienting::structure_from_motion::random::Random;
 
+mod late;
+
 const ANCHOR: Anchor = Anchor {
     lon_deg: 8.4,
     lat_deg: 49.0,

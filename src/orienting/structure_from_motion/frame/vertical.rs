@@ -272,7 +272,7 @@ pub(super) fn up_of_plane(block: &Block) -> Vector3<f64> {
 }
 
 /// A rotation that brings a direction to Z.
-pub(super) fn turn_to_up(up: &Vector3<f64>) -> Rotation3<f64> {
+pub(in super::super) fn turn_to_up(up: &Vector3<f64>) -> Rotation3<f64> {
     let axis = up.cross(&Vector3::z());
     let angle = math::atan2(axis.norm(), up.z);
     match axis.try_normalize(1e-12) {

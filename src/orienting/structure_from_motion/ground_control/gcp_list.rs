@@ -2,20 +2,25 @@
 //! reference system, then lines
 //!
 //! ```text
-//! geo_x geo_y geo_z im_x im_y image_name [gcp_name] [more]
+//! geo_x geo_y geo_z im_x im_y image_name [gcp_name [role ...] [more]]
 //! ```
+//!
+//! What a point is for ([`Role`]) stands behind its name, where programs that do not know it look
+//! for nothing; on one of its lines is enough.
 //!
 //! `im_x`, `im_y` count in pixels from the upper left corner of the photograph as it is stored.
 //! Coordinates count in the unit of the system, and become metres here.
 
 use nalgebra::{Point2, Point3, Vector3};
 
+use super::role::Role;
 use super::system::{List, fields, number, read_among};
-use crate::base::error::Result;
+use crate::base::error::{Result, listed};
 use crate::orienting::orientation::{
     Anchor, GCP_LIST, InputFile, LinearUnit, PlanUnit, SystemUnits, TransverseMercator,
     geocentric_of,
 };
+use crate::orienting::structure_from_motion::similarity_fit::KnownOf;
 
 /// A point with known coordinates.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +33,8 @@ pub struct ControlPoint {
     pub position: Point3<f64>,
     /// Names of photographs, and where they show the point: pixels.
     pub marks: Vec<(String, Point2<f64>)>,
+    /// What it is for.
+    pub role: Role,
 }
 
 /// Points with known coordinates, and their reference system.
@@ -46,12 +53,75 @@ pub struct GroundControl {
     pub offset: Vector3<f64>,
     /// The points.
     pub points: Vec<ControlPoint>,
+    /// Words where a role may stand that are none.
+    pub no_roles: Vec<String>,
+}
+
+/// The points of a list while it is read.
+#[derive(Default)]
+struct Points {
+    points: Vec<ControlPoint>,
+    /// What their lines state of their roles so far.
+    roles: Vec<Option<Role>>,
+    no_roles: Vec<String>,
+}
+
+impl Points {
+    /// Adds a line; what is wrong with it, and what was expected.
+    fn add(&mut self, line: &str) -> std::result::Result<(), (String, &'static str)> {
+        let fields = fields(line);
+        let numbers: Vec<f64> = (fields.iter().take(5))
+            .map_while(|field| number(field).filter(|v| v.is_finite()))
+            .collect();
+        let (&[x, y, z, u, v], Some(image)) = (&numbers[..], fields.get(5)) else {
+            return Err((format!("'{line}'"), COLUMNS));
+        };
+        let place = [x, y, z];
+        let name = fields.get(6);
+        let role = Role::of(fields.get(7..).unwrap_or_default(), &mut self.no_roles);
+        if let Some(word) = name.filter(|name| role.is_none() && Role::named(name).is_some()) {
+            let problem = format!("'{word}' where the name of the point stands");
+            return Err((problem, "the name before the role"));
+        }
+        let known = self.points.iter().position(|p| match name {
+            Some(name) => p.name == *name,
+            None => p.stated == place,
+        });
+        let at = known.unwrap_or(self.points.len());
+        if known.is_none() {
+            self.points.push(ControlPoint {
+                name: name.cloned().unwrap_or_else(|| (at + 1).to_string()),
+                stated: place,
+                position: Point3::origin(),
+                marks: Vec::new(),
+                role: Role::default(),
+            });
+            self.roles.push(None);
+        }
+        let (point, before) = (&mut self.points[at], &mut self.roles[at]);
+        if point.stated != place {
+            let problem = format!("point {} has other coordinates above", point.name);
+            return Err((problem, "one place for each name"));
+        }
+        point.marks.push((image.clone(), Point2::new(u, v)));
+        match (*before, role) {
+            (Some(above), Some(role)) if above != role => {
+                let problem = format!("point {} is for {above} above, not {role}", point.name);
+                Err((problem, "one role for each name"))
+            }
+            (above, role) => {
+                *before = role.or(above);
+                point.role = before.unwrap_or_default();
+                Ok(())
+            }
+        }
+    }
 }
 
 /// Coordinates on a map are counted from a multiple of this, metres.
 const GRID_M: f64 = 100.0;
 
-const COLUMNS: &str = "geo_x geo_y geo_z im_x im_y image_name [gcp_name]";
+const COLUMNS: &str = "geo_x geo_y geo_z im_x im_y image_name [gcp_name [role]]";
 
 impl GroundControl {
     /// What a list is called among photographs.
@@ -72,38 +142,13 @@ impl GroundControl {
     pub fn read(file: &str, text: &str) -> Result<Self> {
         let list = List::new(file, text)?;
         let (system, (first, stated)) = (&list.system, list.first);
-        let mut points: Vec<ControlPoint> = Vec::new();
+        let mut points = Points::default();
         for &(i, line) in &list.lines {
-            let fields = fields(line);
-            let numbers: Vec<f64> = (fields.iter().take(5))
-                .map_while(|field| number(field).filter(|v| v.is_finite()))
-                .collect();
-            let (&[x, y, z, u, v], Some(image)) = (&numbers[..], fields.get(5)) else {
-                return Err(list.refused(i, format!("'{line}'"), COLUMNS));
-            };
-            let place = [x, y, z];
-            let mark = (image.clone(), Point2::new(u, v));
-            let name = fields.get(6);
-            let known = points.iter_mut().find(|p| match name {
-                Some(name) => p.name == *name,
-                None => p.stated == place,
-            });
-            match known {
-                Some(point) if point.stated != place => {
-                    let problem = format!("point {} has other coordinates above", point.name);
-                    return Err(list.refused(i, problem, "one place for each name"));
-                }
-                Some(point) => point.marks.push(mark),
-                None => points.push(ControlPoint {
-                    name: name
-                        .cloned()
-                        .unwrap_or_else(|| (points.len() + 1).to_string()),
-                    stated: place,
-                    position: Point3::origin(),
-                    marks: vec![mark],
-                }),
-            }
+            (points.add(line)).map_err(|(problem, expected)| list.refused(i, problem, expected))?;
         }
+        let Points {
+            points, no_roles, ..
+        } = points;
         let fit = |[x, y]: [usize; 2]| {
             let mut places = points
                 .iter()
@@ -132,9 +177,23 @@ impl GroundControl {
             anchor: None,
             offset: Vector3::zeros(),
             points,
+            no_roles,
         };
         control.set_frame();
         Ok(control)
+    }
+
+    /// What is doubtful of the roles, a sentence.
+    pub(super) fn words(&self) -> Option<String> {
+        let others = listed(self.no_roles.iter().map(String::as_str));
+        (!self.no_roles.is_empty()).then(|| {
+            format!(
+                "in {} words behind the names of points are no role: {others}; those points count as \
+                 if they were not there (roles are {})",
+                Self::FILE,
+                Role::WORDS
+            )
+        })
     }
 
     /// The same points with other coordinates or marks.
@@ -166,7 +225,10 @@ impl GroundControl {
 
     /// Positions in metres near zero.
     fn set_frame(&mut self) {
-        let Some(first) = self.points.first().map(|p| p.stated) else {
+        // Where only the height is known the place need not be exact.
+        let has_plan = |p: &&ControlPoint| p.role.known != KnownOf::Height;
+        let first = (self.points.iter().find(has_plan)).or(self.points.first());
+        let Some(first) = first.map(|p| p.stated) else {
             return;
         };
         let metres = |unit: Option<LinearUnit>| unit.map_or(1.0, |u| u.metres);

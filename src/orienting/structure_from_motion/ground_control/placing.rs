@@ -64,6 +64,7 @@ pub(in super::super) fn to_control(
     let light = without_keypoints(block);
     let marks = Marks::of(control, block, beside.paths);
     let mut words = marks.words();
+    words.extend(control.words());
     let fits = heights_read(control).into_iter().map(|control| {
         let fit = fitted(&light, &marks, &control)?;
         Ok(Reading::of(control, fit, block, beside))
@@ -145,7 +146,7 @@ fn explanation(speaks: &str, explained: &[(Mistake, Reading)]) -> String {
          were not used",
         names.join(", or "),
         fit.agreeing,
-        fit.points.len(),
+        fit.control,
         fit.rms_m[0],
         fit.rms_m[1]
     )
@@ -232,13 +233,13 @@ impl Reading {
 
     /// Does nothing speak against it, and do most of its points agree?
     fn is_sound(&self) -> bool {
-        self.doubts.is_empty() && 2 * self.fit.agreeing > self.fit.points.len()
+        self.doubts.is_empty() && 2 * self.fit.agreeing > self.fit.control
     }
 
     /// What speaks against it, in words.
     fn against(&self) -> String {
         if self.doubts.is_empty() {
-            let [agreeing, all] = [self.fit.agreeing, self.fit.points.len()];
+            let [agreeing, all] = [self.fit.agreeing, self.fit.control];
             return format!("{agreeing} of {all} ground control points agree with each other");
         }
         let against: Vec<String> = self.doubts.iter().map(Doubt::words).collect();
@@ -255,6 +256,7 @@ impl Reading {
             offset: self.control.offset.into(),
             points: self.fit.points.clone(),
             rms_m: self.fit.rms_m,
+            sigma: self.fit.sigma,
         }
     }
 }

@@ -9,6 +9,8 @@ use crate::orienting::structure_from_motion::bundle::tests::planted;
 use crate::orienting::structure_from_motion::frame::{FrameBasis, StatedPose};
 use crate::orienting::structure_from_motion::similarity::Similarity;
 
+mod roles;
+
 const OFFSET: Vector3<f64> = Vector3::new(432_100.0, 5_412_300.0, 0.0);
 
 /// A block in a frame of its own, and a list of its points of these numbers as they are on the
@@ -95,7 +97,7 @@ fn control_points_give_the_map_and_a_wrong_one_and_a_wrong_mark_are_named() {
     let agrees: Vec<bool> = points.iter().map(|p| p.agrees).collect();
     assert_eq!(agrees, [true, true, false, true, true, true, true]);
     assert_eq!(points[4].wrong_marks.len(), 1);
-    let [_, y, z] = points[2].residual_m.unwrap();
+    let [_, y, z] = points[2].residual_m.unwrap().map(Option::unwrap);
     assert!((y + 3.0).abs() < 0.1 && (z - 1.0).abs() < 0.1, "{y} {z}");
     assert!(rms_m[0] < 0.03 && rms_m[1] < 0.06, "{rms_m:?}");
     for (a, b) in block.photos.iter().zip(&truth.photos) {

@@ -111,6 +111,7 @@ pub(super) fn stated_of(photos: &[Photo], list: Option<&GeoList>) -> Stated {
             position: anchor.and_then(|anchor| Some(anchor.local(&geocentric(m)?))),
             lacks_height: height(m).is_none(),
             sigma_m: place(i).and_then(|place| place.sigma_m),
+            taken_s: m.taken.as_deref().and_then(seconds),
             rotation: m.yaw_pitch_roll.map(rotation_of_angles),
             yaw_pitch_roll: m.yaw_pitch_roll,
         })
@@ -120,6 +121,18 @@ pub(super) fn stated_of(photos: &[Photo], list: Option<&GeoList>) -> Stated {
         anchor,
         notes,
     }
+}
+
+/// Seconds of "YYYY-MM-DD HH:MM:SS", as if each month had 31 days: a flight is shorter.
+fn seconds(taken: &str) -> Option<f64> {
+    let parts: Vec<f64> = (taken.split(['-', ' ', ':']))
+        .map(|part| part.parse().ok())
+        .collect::<Option<_>>()?;
+    let &[year, month, day, hour, minute, second] = &parts[..] else {
+        return None;
+    };
+    let days = (year * 12.0 + month) * 31.0 + day;
+    Some(((days * 24.0 + hour) * 60.0 + minute) * 60.0 + second)
 }
 
 /// A header in which what a list states stands.

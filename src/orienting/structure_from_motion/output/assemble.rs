@@ -3,12 +3,13 @@
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
 use super::report::{CameraReport, LeftOut, OrientReport, PhotoReport};
+use super::sheet::rms_words;
 use super::sparse_model::{OrientedPhoto, SparseModel, SparsePoint};
 use crate::orienting::orientation::Anchor;
 use crate::orienting::structure_from_motion::block::{Block, Track};
 use crate::orienting::structure_from_motion::bundle::Covariance;
 use crate::orienting::structure_from_motion::frame::{FrameBasis, StatedPose};
-use crate::orienting::structure_from_motion::ground_control::ControlResidual;
+use crate::orienting::structure_from_motion::ground_control::{ControlResidual, rms_m};
 use crate::orienting::structure_from_motion::intrinsics::{Intrinsics, stated_focal_nats};
 
 /// Fewest shared points of photographs that count as overlapping.
@@ -109,17 +110,7 @@ pub(in super::super) fn report(
     let RayCounts { rays, squares, .. } = &counts;
     let registered = block.registered();
     let total: usize = rays.iter().sum();
-    let photos: Vec<PhotoReport> = (registered.iter().enumerate())
-        .map(|(slot, &photo)| PhotoReport {
-            file: names.paths[photo].to_owned(),
-            rays: rays[photo],
-            rms_px: (squares[photo] / rays[photo].max(1) as f64).sqrt(),
-            sigma_m: covariance.map(|c| deviations(&c.centers[slot])),
-            sigma_deg: covariance.map(|c| largest_deviation(&c.turns[slot]).to_degrees()),
-            partners: counts.partners(photo, &registered),
-            from_stated_m: from_stated(block, names, basis, photo),
-        })
-        .collect();
+    let photos = photos(block, names, basis, covariance, &counts);
     let rays_a_point = total as f64 / counts.points.max(1) as f64;
     let (frame, anchor, mut warnings) = frame_words(basis);
     warnings.extend((rays_a_point < FEW_RAYS).then(|| {
@@ -130,20 +121,26 @@ pub(in super::super) fn report(
     }));
     let cameras = cameras(block, names, covariance);
     warnings.extend(cameras.iter().filter_map(contradiction));
-    let (epsg, offset, control) = match basis {
+    let (epsg, offset, control, frame_sigma, lag) = match basis {
         FrameBasis::Control {
             epsg,
             offset,
             points,
+            sigma,
             ..
-        } => (*epsg, *offset, points.clone()),
-        _ => (None, [0.0; 3], Vec::new()),
+        } => (*epsg, *offset, points.clone(), *sigma, None),
+        FrameBasis::Positions { sigma, lag, .. } => {
+            (None, [0.0; 3], Vec::new(), *sigma, lag.clone())
+        }
+        _ => (None, [0.0; 3], Vec::new(), None, None),
     };
     OrientReport {
         frame,
         anchor,
         epsg,
         offset,
+        frame_sigma,
+        lag,
         is_metric: anchor.is_some() || !control.is_empty(),
         control,
         points: counts.points,
@@ -156,6 +153,32 @@ pub(in super::super) fn report(
         overlap: counts.overlap(&registered),
         warnings,
     }
+}
+
+/// The oriented photographs.
+fn photos(
+    block: &Block,
+    names: &Names,
+    basis: &FrameBasis,
+    covariance: Option<&Covariance>,
+    counts: &RayCounts,
+) -> Vec<PhotoReport> {
+    let (RayCounts { rays, squares, .. }, registered) = (counts, block.registered());
+    (registered.iter().enumerate())
+        .map(|(slot, &photo)| {
+            let from_stated = from_stated(block, names, basis, photo);
+            PhotoReport {
+                file: names.paths[photo].to_owned(),
+                rays: rays[photo],
+                rms_px: (squares[photo] / rays[photo].max(1) as f64).sqrt(),
+                sigma_m: covariance.map(|c| deviations(&c.centers[slot])),
+                sigma_deg: covariance.map(|c| largest_deviation(&c.turns[slot]).to_degrees()),
+                partners: counts.partners(photo, &registered),
+                from_stated_m: from_stated.map(Vector3::into),
+                residual_m: from_stated.map(|d| (d - moved_m(basis, photo)).into()),
+            }
+        })
+        .collect()
 }
 
 /// What the rays of a block count up to.
@@ -251,13 +274,29 @@ fn contradiction(camera: &CameraReport) -> Option<String> {
     })
 }
 
-fn from_stated(block: &Block, names: &Names, basis: &FrameBasis, photo: usize) -> Option<[f64; 3]> {
+/// A photograph's place minus the stated one, metres.
+fn from_stated(
+    block: &Block,
+    names: &Names,
+    basis: &FrameBasis,
+    photo: usize,
+) -> Option<Vector3<f64>> {
     if !matches!(basis, FrameBasis::Positions { .. }) {
         return None;
     }
     let center = block.photos[photo].pose.as_ref()?.center;
     let stated = names.stated.get(photo).filter(|s| !s.lacks_height)?;
-    Some((center - stated.position?).into())
+    Some(center - stated.position?)
+}
+
+/// By how much the stated position of a photograph was moved along the flight, metres.
+fn moved_m(basis: &FrameBasis, photo: usize) -> Vector3<f64> {
+    let lag = match basis {
+        FrameBasis::Positions { lag, .. } => lag.as_ref(),
+        _ => None,
+    };
+    lag.and_then(|lag| lag.moved_m.get(photo).copied())
+        .unwrap_or_default()
 }
 
 fn deviations(covariance: &Matrix3<f64>) -> [f64; 3] {
@@ -288,6 +327,7 @@ fn positions_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) 
         heights,
         rms_m: [plan, height],
         is_levelled,
+        ..
     } = basis
     else {
         return Default::default();
@@ -318,7 +358,12 @@ fn frame_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) {
             rms_m: [plan, height],
             ..
         } => {
-            let (unit, agreeing) = (basis.unit(), points.iter().filter(|p| p.agrees).count());
+            let of = |is_check| points.iter().filter(move |p| p.role.is_check == is_check);
+            let (unit, agreeing) = (basis.unit(), of(false).filter(|p| p.agrees).count());
+            let check = match of(true).count() {
+                0 => String::new(),
+                count => format!("; check points: {count}{}", rms_words(rms_m(of(true)))),
+            };
             let frame = match anchor {
                 Some(anchor) => metres_from(anchor),
                 None if unit.is_metre() => format!("{system}, x from {east} and y from {north} m"),
@@ -326,8 +371,8 @@ fn frame_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) {
             };
             let words = format!(
                 "{frame}: {agreeing} of {} ground control points, rms {plan:.3} m in plan, \
-                 {height:.3} m in height",
-                points.len()
+                 {height:.3} m in height{check}",
+                of(false).count()
             );
             (words, *anchor, control_warnings(points))
         }
@@ -355,23 +400,28 @@ fn frame_words(basis: &FrameBasis) -> (String, Option<Anchor>, Vec<String>) {
 fn control_warnings(points: &[ControlResidual]) -> Vec<String> {
     let mut warnings = Vec::new();
     for p in points {
-        if let (Some([x, y, z]), false) = (p.residual_m, p.agrees) {
+        let (what, others) = match p.role.is_check {
+            true => ("check point", "the control points put"),
+            false => ("ground control point", "the others put"),
+        };
+        if let (Some(off), false) = (p.residual_m, p.agrees) {
+            let off = off.map(|d| d.map_or_else(|| "-".to_owned(), |d| format!("{d:.2}")));
             warnings.push(format!(
-                "ground control point {} is {x:.2}, {y:.2}, {z:.2} m (x, y, z) from where the others \
-                 put it: check its coordinates and marks",
-                p.name
+                "{what} {} is {} m (x, y, z) from where {others} it: check its coordinates and marks",
+                p.name,
+                off.join(", ")
             ));
         }
         if p.residual_m.is_none() {
             warnings.push(format!(
-                "ground control point {} is not used: mark it in two or more oriented photographs \
-                 ({} of its marks are in such)",
+                "{what} {} is not used: mark it in two or more oriented photographs ({} of its marks \
+                 are in such)",
                 p.name, p.marks[0]
             ));
         }
         if !p.wrong_marks.is_empty() {
             warnings.push(format!(
-                "ground control point {} is marked elsewhere in {} than in the other photographs",
+                "{what} {} is marked elsewhere in {} than in the other photographs",
                 p.name,
                 p.wrong_marks.join(", ")
             ));

@@ -4,10 +4,12 @@ mod assemble;
 mod measure;
 mod report;
 mod scale;
+mod sheet;
 mod sparse_model;
 
 use assemble::ARBITRARY_SCALE;
 pub(super) use assemble::{Names, report, sparse_model};
 pub use measure::{MeasuredLength, NotMeasured};
 pub use report::{CameraReport, LeftOut, NotJoined, OrientReport, PhotoReport};
+pub use sheet::ControlSheet;
 pub use sparse_model::{OrientedPhoto, SparseModel, SparsePoint};

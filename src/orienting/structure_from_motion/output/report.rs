@@ -4,6 +4,9 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
+use super::sheet::{control_tables, worth_words};
+use crate::orienting::orientation::FrameSigma;
+use crate::orienting::structure_from_motion::frame::Lag;
 use crate::orienting::structure_from_motion::ground_control::ControlResidual;
 
 /// Why a photograph has no orientation.
@@ -74,6 +77,8 @@ pub struct PhotoReport {
     pub partners: usize,
     /// Distance from its stated position, x y z: metres.
     pub from_stated_m: Option<[f64; 3]>,
+    /// What is left of that without the lag of the receiver, where one was taken out.
+    pub residual_m: Option<[f64; 3]>,
 }
 
 /// A calibrated camera.
@@ -118,7 +123,11 @@ pub struct OrientReport {
     pub offset: [f64; 3],
     /// Is the scale that of the world?
     pub is_metric: bool,
-    /// Ground control points, where they give the frame.
+    /// What scale and level of the frame are worth, where that is known.
+    pub frame_sigma: Option<FrameSigma>,
+    /// By how much stated positions are late, where they give the frame and tell.
+    pub lag: Option<Lag>,
+    /// Ground control points and check points, where they give the frame.
     pub control: Vec<ControlResidual>,
     /// World points.
     pub points: usize,
@@ -148,13 +157,18 @@ impl OrientReport {
 
     /// As text.
     pub fn to_text(&self) -> String {
-        let table = self.table() + &control_words(&self.control);
+        let table = self.table() + &control_tables(&self.control);
         self.block_words() + &table + &self.remarks()
     }
 
     /// The same without a row for each photograph and control point.
     pub fn in_short(&self) -> String {
         self.block_words() + &self.remarks()
+    }
+
+    /// What scale and level of the frame are worth, and the lag of the receiver, a sentence each.
+    pub fn worth(&self) -> Vec<String> {
+        worth_words(self.frame_sigma.as_ref(), self.lag.as_ref())
     }
 
     /// The block as a whole, and its cameras.
@@ -168,6 +182,9 @@ impl OrientReport {
             self.rms_px,
             self.frame
         );
+        for words in self.worth() {
+            text += &(words + "\n");
+        }
         for camera in &self.cameras {
             text += &camera.words();
         }
@@ -218,36 +235,6 @@ impl OrientReport {
         }
         text
     }
-}
-
-/// A table of the residuals at ground control points; empty without them.
-fn control_words(control: &[ControlResidual]) -> String {
-    let Some(widest) = control.iter().map(|p| p.name.chars().count()).max() else {
-        return String::new();
-    };
-    let width = widest.max("control point".len());
-    let mut text = format!(
-        "{:<width$}  marks  from stated x, y, z (m)     sigma\n",
-        "control point"
-    );
-    for p in control {
-        let [marks, agreeing] = p.marks;
-        let of = p.residual_m.zip(p.sigma_m).map_or_else(
-            || "not seen by two rays that meet".to_owned(),
-            |([x, y, z], sigma)| format!("{x:>9.3}{y:>9.3}{z:>9.3}{sigma:>10.3}"),
-        );
-        let verdict = if p.residual_m.is_some() && !p.agrees {
-            "  wrong"
-        } else {
-            ""
-        };
-        let _ = writeln!(
-            text,
-            "{:<width$}{agreeing:>4}/{marks:<2}{of}{verdict}",
-            p.name
-        );
-    }
-    text
 }
 
 impl CameraReport {

@@ -4,6 +4,7 @@ use nalgebra::{Point2, Point3, Vector3};
 
 use super::report::OrientReport;
 use super::sparse_model::SparseModel;
+use crate::orienting::orientation::FrameSigma;
 
 /// Points of an epipolar curve.
 const CURVE_POINTS: usize = 49;
@@ -70,12 +71,19 @@ impl OrientReport {
     pub(in super::super) fn scale(&mut self, factor: f64, moved: &[Vector3<f64>], words: &str) {
         for (photo, moved) in self.photos.iter_mut().zip(moved) {
             photo.sigma_m = photo.sigma_m.map(|sigma| sigma.map(|s| s * factor));
-            photo.from_stated_m = (photo.from_stated_m).map(|d| (Vector3::from(d) + moved).into());
+            let further = |d: Option<[f64; 3]>| d.map(|d| (Vector3::from(d) + moved).into());
+            photo.from_stated_m = further(photo.from_stated_m);
+            photo.residual_m = further(photo.residual_m);
         }
         self.frame = match self.frame.split_once("; scale from ") {
             Some((before, _)) => format!("{before}; scale from {words}"),
             None => format!("{}; scale from {words}", self.frame),
         };
+        // How well the length is known is not stated; the level stays.
+        self.frame_sigma = (self.frame_sigma.as_ref()).map(|sigma| FrameSigma {
+            length_of_10_m: None,
+            ..*sigma
+        });
         self.is_metric = true;
         self.warnings.retain(|w| w != super::ARBITRARY_SCALE);
     }

@@ -31,12 +31,14 @@ mod written;
 
 pub use self::reported::ReportedModel;
 
+use super::measured::in_frame;
 use crate::results::roof_report::{SetbackRule, roof_report};
 
 impl ReportedModel {
     /// The files of the roof report, name and bytes, with what rules of setbacks leave of faces.
     pub fn files(mut self, setbacks: &[SetbackRule]) -> Vec<(String, Vec<u8>)> {
-        self.buildings = roof_report(&self.model, setbacks);
+        let frame = self.survey.frame_sigma.as_ref();
+        self.buildings = in_frame(roof_report(&self.model, setbacks), frame);
         self.setbacks = setbacks.to_vec();
         let files = [
             ("roof_report.html", page::page(&self).into_bytes()),

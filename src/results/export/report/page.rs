@@ -60,6 +60,16 @@ fn photographs(reported: &ReportedModel) -> Vec<String> {
     names
 }
 
+/// What the figures are, and what the frame is worth where that is stated.
+fn explanation(reported: &ReportedModel) -> String {
+    let frame = reported.survey.frame_sigma.as_ref();
+    let frame = frame.map(|frame| {
+        let words = frame.words().replace("+-", "±");
+        format!(" The frame is in it, too: {words}.")
+    });
+    EXPLANATION.to_owned() + &frame.unwrap_or_default()
+}
+
 fn summary(html: &mut Html, reported: &ReportedModel) {
     let buildings = &reported.buildings;
     let faces: usize = buildings.iter().map(|b| b.facets.len()).sum();
@@ -75,8 +85,9 @@ fn summary(html: &mut Html, reported: &ReportedModel) {
         return;
     }
     html.push(format_args!(
-        "<p>Buildings: {}. Roof faces: {faces}, {area} in all. {system}</p>\n<p class=\"note\">{EXPLANATION}</p>\n",
-        buildings.len()
+        "<p>Buildings: {}. Roof faces: {faces}, {area} in all. {system}</p>\n<p class=\"note\">{}</p>\n",
+        buildings.len(),
+        explanation(reported)
     ));
     figure(
         html,

@@ -7,11 +7,12 @@
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
+use super::super::cityjson::{FRAME_SIGMA, HEIGHT_OVER_10_M, LENGTH_OF_10_M};
 use super::reported::{ReportedModel, ReportedWalls};
 use crate::base::geometry::{Plane, mean_point, plan_sides, vector_area};
 use crate::base::ids::{BuildingId, FacetId};
 use crate::orienting::known::json_of;
-use crate::orienting::orientation::{PlanUnit, SystemUnits, epsg_of, units_of};
+use crate::orienting::orientation::{FrameSigma, PlanUnit, SystemUnits, epsg_of, units_of};
 use crate::orienting::scene::Survey;
 use crate::roofs::model::{
     CornerUncertainty, Facet, FacetUncertainty, SideSupport, SideUncertainty, Surface,
@@ -69,6 +70,8 @@ fn read_model(bytes: &[u8]) -> Result<ReportedModel, String> {
             if added.map_err(|problem| format!("{name}: {problem}"))? {
                 read.names.push((*name).clone());
                 read.walls.push(walls_of(&object["attributes"]));
+                let stated = frame_sigma(&object["attributes"][FRAME_SIGMA]);
+                read.survey.frame_sigma = read.survey.frame_sigma.or(stated);
             }
         }
     }
@@ -133,6 +136,15 @@ fn survey(metadata: &Value) -> Survey {
         anchor: title(metadata).and_then(Survey::anchor_described),
         ..Survey::default()
     }
+}
+
+/// What the scale and the level of the frame are worth, as a building states it of all.
+fn frame_sigma(stated: &Value) -> Option<FrameSigma> {
+    let number = |name: &str| stated[name].as_f64().filter(|sigma| *sigma >= 0.0);
+    stated.is_object().then(|| FrameSigma {
+        length_of_10_m: number(LENGTH_OF_10_M),
+        height_over_10_m: number(HEIGHT_OVER_10_M),
+    })
 }
 
 /// The solid with semantics whose walls stand below the eaves (LoD 2.2), else the last one, which

@@ -26,13 +26,20 @@ pub(super) fn roofs(reported: &ReportedModel) -> Vec<u8> {
             "setbackMeters": by_kind.collect::<std::collections::BTreeMap<_, _>>(),
         })
     });
-    to_bytes(&json!({
+    let mut file = json!({
         "coordinates": reported.system,
         "setbacks": setbacks.collect::<Value>(),
         "buildings": (reported.buildings.iter())
             .map(|building| building_of(reported, building))
             .collect::<Value>(),
-    }))
+    });
+    if let Some(frame) = &reported.survey.frame_sigma {
+        file["frame"] = json!({
+            "lengthOf10SigmaMeters": frame.length_of_10_m,
+            "heightOver10SigmaMeters": frame.height_over_10_m,
+        });
+    }
+    to_bytes(&file)
 }
 
 fn building_of(reported: &ReportedModel, report: &BuildingReport) -> Value {

@@ -3,7 +3,7 @@
 
 use nalgebra::{Point2, Point3, center};
 
-use super::super::cityjson::whole_corners;
+use super::super::cityjson::{whole_corners, written_frame};
 use super::super::format::rounded;
 use super::super::measured::Measured;
 use super::read::plane_of;
@@ -36,6 +36,7 @@ impl ReportedModel {
             survey: Survey {
                 epsg: *epsg,
                 anchor: anchor.clone().filter(|_| epsg.is_none()),
+                frame_sigma: written_frame(scene),
                 ..Survey::default()
             },
             ..Self::default()

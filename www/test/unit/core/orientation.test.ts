@@ -1,7 +1,8 @@
 /** Photographs and pairs are dealt to workers, and what one has read is given to all. */
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { drawnPlan } from "../../../src/app/project/orienting/overlapGeometry";
+import { drawnPlan, exaggeration } from "../../../src/app/project/orienting/overlapGeometry";
 import { nearestMatch } from "../../../src/app/project/orienting/pairGeometry";
+import { planResiduals, rms, roleText } from "../../../src/app/project/orienting/residuals";
 import { OrientationRun, type OrientEvents } from "../../../src/core/orientation";
 import type { OrientReply, OrientRequest } from "../../../src/shared/orientation";
 
@@ -133,6 +134,51 @@ describe("the plan of the cameras", () => {
       [10, 30],
     ]);
     expect(drawnPlan([[3, 3, 3]], 100, 10)).toEqual([[50, 50]]);
+  });
+});
+
+describe("residuals on the plan", () => {
+  const point = (name: string, is_check: boolean, residual: [number, number, number | null] | null) => ({
+    name,
+    role: { is_check, known: residual?.[2] === null ? ("plan" as const) : ("all" as const) },
+    stated: [0, 0, 0] as [number, number, number],
+    marks: [2, 2] as [number, number],
+    wrong_marks: [],
+    place_m: residual === null ? null : ([10, 20, 30] as [number, number, number]),
+    residual_m: residual,
+    sigma_m: 0.02,
+    agrees: true,
+  });
+
+  it("are drawn so long that the longest is seen, by a round factor", () => {
+    const square = [
+      [0, 0],
+      [60, 30],
+    ] as const;
+    expect(exaggeration(square, [[0.3, 0.4]])).toBe(20);
+    expect(exaggeration(square, [[0, 0.012]])).toBe(500);
+    expect(exaggeration(square, [[0, 25]])).toBeCloseTo(0.2);
+    expect(exaggeration(square, [[0, 0]])).toBe(1);
+  });
+
+  it("are those of points where there are any, else of stated positions", () => {
+    const control = [
+      point("a", false, [0.3, 0.4, null]),
+      point("b", true, [3, 4, 2]),
+      point("c", true, null),
+    ];
+    const shown = planResiduals({ control, photos: [] }, []);
+    expect(shown.map(({ kind, offset }) => [kind, offset])).toEqual([
+      ["used", [0.3, 0.4]],
+      ["check", [3, 4]],
+    ]);
+    expect(control.map(({ role }) => roleText(role))).toEqual(["control, plan only", "check", "check"]);
+    expect(rms(control.slice(0, 1))).toEqual([0.5, null]);
+    expect(rms(control.slice(1))).toEqual([5, 2]);
+    const photo = { file: "d.jpg", rays: 1, rms_px: 1, sigma_m: null, sigma_deg: null, partners: 1 };
+    const stated = { ...photo, from_stated_m: null, residual_m: [1, 2, 3] as [number, number, number] };
+    const of = planResiduals({ control: [], photos: [stated] }, [[5, 6, 7]]);
+    expect(of).toEqual([{ name: "d.jpg", place: [5, 6, 7], offset: [1, 2], kind: "used" }]);
   });
 });
 

@@ -8,6 +8,7 @@ import { ControlPoints } from "./ControlPoints";
 import { KnownLength } from "./KnownLength";
 import { OverlapPlan } from "./OverlapPlan";
 import { computeOrientation, saveOrientation, saveOrientationFiles } from "./orientation";
+import { ResidualPlan } from "./ResidualPlan";
 
 const FILES: readonly (readonly [string, string])[] = [
   ["cameras.txt", "focal length, distortion"],
@@ -34,9 +35,12 @@ export function OrientationResult({ report }: { report: OrientationReport }) {
       <p>
         <b>Frame:</b> {onPage(report.frame)}.
       </p>
+      {report.worth.map((words) => (
+        <p key={words}>{sentence(words)}</p>
+      ))}
       {report.warnings.map((warning) => (
         <p key={warning} class="doubt">
-          {onPage(warning.charAt(0).toUpperCase() + warning.slice(1))}.
+          {sentence(warning)}
         </p>
       ))}
       {[report.frame, ...report.warnings].some((words) => askedBy(words).options.includes("apply-fix")) && (
@@ -57,6 +61,7 @@ export function OrientationResult({ report }: { report: OrientationReport }) {
         </>
       )}
       <ControlPoints control={report.control} />
+      <ResidualPlan report={report} />
       <KnownLength report={report} />
       <OverlapPlan report={report} />
       <Photographs report={report} />
@@ -80,6 +85,11 @@ export function OrientationResult({ report }: { report: OrientationReport }) {
   );
 }
 
+/** What the core says, as a sentence of the page. */
+function sentence(words: string): string {
+  return `${onPage(words.charAt(0).toUpperCase() + words.slice(1)).replaceAll("+-", "±")}.`;
+}
+
 function Fact({ name, children }: { name: string; children: preact.ComponentChildren }) {
   return (
     <div>
@@ -96,6 +106,7 @@ function focalText({ parameters: [focal], sigmas, is_stated }: OrientationReport
 
 function Photographs({ report }: { report: OrientationReport }) {
   const unit = report.is_metric ? "m" : "units";
+  const isStated = report.photos.some(({ residual_m }) => residual_m !== null);
   return (
     <details>
       <summary>Photographs one by one</summary>
@@ -109,6 +120,7 @@ function Photographs({ report }: { report: OrientationReport }) {
               <th scope="col">rms [px]</th>
               <th scope="col">σ of x, y, z [{unit}]</th>
               <th scope="col">σ of the rotation [°]</th>
+              {isStated && <th scope="col">From the stated position [{unit}]</th>}
             </tr>
           </thead>
           <tbody class="numbers">
@@ -120,6 +132,7 @@ function Photographs({ report }: { report: OrientationReport }) {
                 <td>{one.rms_px.toFixed(2)}</td>
                 <td>{one.sigma_m?.map((sigma) => sigma.toFixed(3)).join(", ") ?? "–"}</td>
                 <td>{one.sigma_deg?.toFixed(3) ?? "–"}</td>
+                {isStated && <td>{one.residual_m?.map((off) => off.toFixed(2)).join(", ") ?? "–"}</td>}
               </tr>
             ))}
           </tbody>

@@ -238,14 +238,14 @@ export async function saveOrientationFiles(): Promise<void> {
   }
 }
 
-/** Of these the project is made; the report is for people. */
-const COLMAP = /^(?:cameras|images|points3D)\.txt$/;
+/** Of these the project is made: the report says where on the Earth it is and what its scale is worth; the log is for people. */
+const ADDED = /^(?:(?:cameras|images|points3D)\.txt|orientation\.json)$/;
 
 /** Adds the orientation to the project, as if it had been dropped, and reconstructs. */
 export async function reconstructWithIt(): Promise<void> {
   const written = await orientationFiles();
   const added = written
-    .filter(({ path }) => COLMAP.test(path))
+    .filter(({ path }) => ADDED.test(path))
     .map(({ path, blob }) => ({ path: `orientation/${path}`, blob }));
   if (added.length === 0) {
     return;

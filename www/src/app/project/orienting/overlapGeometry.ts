@@ -16,3 +16,24 @@ export function drawnPlan(positions: readonly Vec3[], side: number, margin: numb
     side / 2 - (y - (south + north) / 2) * scale,
   ]);
 }
+
+/** Longest arrow of a plan, as a share of its extent. */
+const LONGEST = 1 / 6;
+
+/** By how much offsets are drawn too long on a plan of positions: 1, 2 or 5 times a power of ten. */
+export function exaggeration(
+  positions: readonly (readonly [number, number])[],
+  offsets: readonly (readonly [number, number])[],
+): number {
+  const extent = (axis: 0 | 1) => {
+    const values = positions.map((position) => position[axis]);
+    return Math.max(...values) - Math.min(...values);
+  };
+  const longest = Math.max(...offsets.map(([x, y]) => Math.hypot(x, y)));
+  const most = (LONGEST * Math.max(extent(0), extent(1))) / longest;
+  if (!(most > 0 && Number.isFinite(most))) {
+    return 1;
+  }
+  const power = 10 ** Math.floor(Math.log10(most));
+  return power * ([5, 2].find((digit) => digit * power <= most) ?? 1);
+}
