@@ -75,9 +75,13 @@ fn one_line(text: &str) -> String {
 
 /// Names in a row; long lists are cut short.
 pub(crate) fn listed(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    let names: Vec<String> = names.into_iter().map(|n| n.as_ref().to_owned()).collect();
+    cut_short(&names)
+}
+
+fn cut_short(names: &[String]) -> String {
     // Assumption: whoever reads eight knows what kind they are.
     const MOST_NAMES: usize = 8;
-    let names: Vec<String> = names.into_iter().map(|n| n.as_ref().to_owned()).collect();
     let mut text = names[..names.len().min(MOST_NAMES)].join(", ");
     if names.len() > MOST_NAMES {
         text.push_str(&format!(" and {} more", names.len() - MOST_NAMES));

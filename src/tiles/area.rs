@@ -34,6 +34,9 @@ use crate::results::export::ReportedModel;
 use crate::results::texture::texture_model;
 use crate::roofs::walls::place_walls_of;
 
+/// Names and bytes.
+type Files = Vec<(String, Vec<u8>)>;
+
 /// An area, its tiles, and what those that are done have found.
 #[derive(Clone, Debug)]
 pub struct Area {
@@ -267,7 +270,7 @@ impl Area {
     /// One model of all tiles, as files, and as the roof report states it, whatever the order in
     /// which they were done; the first error where no tile could be read. `seconds` of each tile go
     /// into `report.json` and may be empty.
-    pub fn finish(mut self, seconds: &[f64]) -> Result<(Vec<(String, Vec<u8>)>, ReportedModel)> {
+    pub fn finish(mut self, seconds: &[f64]) -> Result<(Files, ReportedModel)> {
         let joined = self.join()?;
         let reports: Vec<TileReport> = self.reports.into_values().collect();
         let done = (&self.sites[..], &reports[..]);
@@ -276,7 +279,7 @@ impl Area {
     }
 
     /// The same with 3D Tiles of a file for each square, so that a viewer fetches what it shows.
-    pub fn finish_in_squares(mut self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
+    pub fn finish_in_squares(mut self, seconds: &[f64]) -> Result<Files> {
         let joined = self.join()?;
         let reports: Vec<TileReport> = self.reports.into_values().collect();
         let done = (&self.sites[..], &reports[..]);
@@ -432,7 +435,7 @@ pub(super) fn files_in_squares(
     params: &Params,
     done: (&[Site], &[TileReport]),
     seconds: &[f64],
-) -> Vec<(String, Vec<u8>)> {
+) -> Files {
     let mut files = model_files(joined, params, done, seconds);
     if joined.squares_with_buildings() > 1 {
         let squares = joined.squares(parts, params.texture.jpeg_quality);
@@ -448,7 +451,7 @@ pub(super) fn model_files(
     params: &Params,
     (sites, reports): (&[Site], &[TileReport]),
     seconds: &[f64],
-) -> Vec<(String, Vec<u8>)> {
+) -> Files {
     let left_out = sites.iter().filter(|site| !site.is_worked_on);
     let mut files = joined.files(&params.texture);
     let report = json!({

@@ -123,9 +123,9 @@ impl IfcFile {
         let of = format_args!("'roof-{index}',$,$,#{place},$,$,.NOTDEFINED.");
         let roof = self.root("ROOF", of);
         let places = [place, self.placed_in(place)];
-        let points = solid.vertices.iter().map(|p| &p.coords);
-        let points = listed(points.map(|p| format!("({})", coordinates(p))));
-        let points = self.add(format_args!("CARTESIANPOINTLIST3D({points})"));
+        let points = solid.vertices.iter().map(|p| coordinates(&p.coords));
+        let points = points.collect::<Vec<String>>().join("),(");
+        let points = self.add(format_args!("CARTESIANPOINTLIST3D((({points})))"));
         let (mut slabs, mut contained, mut gross_m2) = (Vec::new(), vec![roof], 0.0);
         for (i, face) in solid.faces.iter().enumerate() {
             let shape = self.shape(points, face);
@@ -215,16 +215,14 @@ impl IfcFile {
     /// The shape of a face whose corners are in a list.
     fn shape(&mut self, points: u32, face: &SolidFace) -> u32 {
         // Corners count from 1.
-        let ring = |ring: &Vec<u32>| listed(ring.iter().map(|v| v + 1));
-        let outer = ring(&face.rings[0]);
-        let face = match &face.rings[1..] {
-            [] => self.add(format_args!("INDEXEDPOLYGONALFACE({outer})")),
-            holes => {
-                let holes = listed(holes.iter().map(ring));
-                self.add(format_args!(
-                    "INDEXEDPOLYGONALFACEWITHVOIDS({outer},{holes})"
-                ))
-            }
+        let ring = |ring: &Vec<u32>| listed(&ring.iter().map(|v| v + 1).collect::<Vec<_>>(), "");
+        let rings: Vec<String> = face.rings.iter().map(ring).collect();
+        let (outer, holes) = (&rings[0], rings[1..].join(","));
+        let face = match holes.is_empty() {
+            true => self.add(format_args!("INDEXEDPOLYGONALFACE({outer})")),
+            false => self.add(format_args!(
+                "INDEXEDPOLYGONALFACEWITHVOIDS({outer},({holes}))"
+            )),
         };
         let set = self.add(format_args!("POLYGONALFACESET(#{points},.F.,(#{face}),$)"));
         let body = self.add(format_args!(
@@ -296,7 +294,8 @@ impl IfcFile {
         self.add(format_args!("{class}('{id}',$,{arguments})"))
     }
 
-    /// An entity; gives its number.
+    /// An entity; gives its number. Not inlined: visitors of the page wait for what is large.
+    #[inline(never)]
     fn add(&mut self, entity: Arguments) -> u32 {
         self.last += 1;
         push_line(&mut self.text, format_args!("#{}=IFC{entity};", self.last));
@@ -315,15 +314,19 @@ fn certain(value: f64) -> Estimate {
     Estimate { value, sigma: None }
 }
 
-fn listed(items: impl Iterator<Item = impl ToString>) -> String {
-    let items: Vec<String> = items.map(|item| item.to_string()).collect();
-    format!("({})", items.join(","))
+fn listed(numbers: &[u32], before: &str) -> String {
+    let numbers: Vec<String> = numbers
+        .iter()
+        .map(|number| format!("{before}{number}"))
+        .collect();
+    format!("({})", numbers.join(","))
 }
 
 fn references(numbers: &[u32]) -> String {
-    listed(numbers.iter().map(|number| format!("#{number}")))
+    listed(numbers, "#")
 }
 
+#[inline(never)]
 fn coordinates(v: &Vector3<f64>) -> String {
     let [x, y, z] = v.map(|c| rounded(c, 4)).into();
     format!("{x:?},{y:?},{z:?}")

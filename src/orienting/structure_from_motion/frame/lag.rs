@@ -89,7 +89,7 @@ impl Stated<'_> {
         if let Some(lag) = lag.as_mut().filter(|lag| lag.is_applied) {
             let (moved_m, stated) = self.moved(&velocities, lag.lag);
             let again = by_positions(self.block, &stated, angles);
-            if let Ok((similarity, found, _)) = again
+            if let Ok((similarity, found, None)) = again
                 && found.agreeing >= self.found.agreeing
             {
                 let [as_stated, without] = [(self.stated, self.similarity), (&stated, &similarity)]

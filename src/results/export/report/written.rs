@@ -35,7 +35,7 @@ impl ReportedModel {
             system: scene.survey.describe(),
             survey: Survey {
                 epsg: *epsg,
-                anchor: anchor.clone().filter(|_| epsg.is_none()),
+                anchor: anchor.filter(|_| epsg.is_none()),
                 frame_sigma: written_frame(scene),
                 ..Survey::default()
             },
