@@ -180,8 +180,8 @@ fn names_of_photographs_are_written_in_ascii() {
     assert!(text.contains(name), "{text}");
 }
 
-/// What IfcOpenShell reads in files; `None`, said aloud, where it, or the pytest by which it asks the
-/// rules of the schema, is not there.
+/// What IfcOpenShell reads in files; `None`, said aloud, where it, or the pytest by which it asks
+/// the rules of the schema, is not there.
 fn read(files: &[&[u8]]) -> Option<Vec<Value>> {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let is_there = (Command::new(&python)
