@@ -3,8 +3,9 @@
 //! The edges that bound a flat roof are often those of a parapet that stands above it. Matched
 //! lines and the adjustment put the plane there, and vents and machines rise above the roof as
 //! well. Inside, the views show at which height most of it lies and what stands on it
-//! ([`ClutterTable`]), and so do the points of a cloud. A facet that meets no other one is moved down
-//! there where that is likelier. The parapet itself is no part of the model: walls end at the roof.
+//! ([`ClutterTable`]), and so do the points of a cloud. A facet that meets no other one is moved
+//! down there where that is likelier. The parapet itself is no part of the model: walls end at the
+//! roof.
 
 use nalgebra::Point3;
 use serde::Serialize;
