@@ -6,7 +6,7 @@ export function ControlPoints({ control }: { control: readonly ControlResidual[]
   if (control.length === 0) {
     return null;
   }
-  const checks = control.filter(({ role }) => role.is_check);
+  const checks = control.filter(({ role }) => role?.is_check);
   const [plan, height] = rms(checks);
   return (
     <section data-testid="control-points" aria-label="Ground control points">
@@ -50,7 +50,7 @@ function ControlPoint({ point }: { point: ControlResidual }) {
   const { name, role, marks, residual_m: residual, sigma_m: sigma, agrees } = point;
   const used = agrees ? "yes" : "no, it disagrees";
   const checked = agrees ? "no, it checks and agrees" : "no, it checks and disagrees";
-  const inFrame = residual === null ? "not seen by two rays" : role.is_check ? checked : used;
+  const inFrame = residual === null ? "not seen by two rays" : role?.is_check ? checked : used;
   return (
     <tr class={agrees ? undefined : "disagreeing"}>
       <th scope="row">{name}</th>

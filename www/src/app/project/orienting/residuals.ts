@@ -19,8 +19,8 @@ export function planResiduals(
     return control.flatMap(({ name, place_m: place, residual_m: residual, role, agrees }) => {
       const [x, y] = residual ?? [];
       const offset: [number, number] | null = typeof x === "number" && typeof y === "number" ? [x, y] : null;
-      const kind = agrees ? (role.is_check ? "check" : "used") : "wrong";
-      return place === null ? [] : [{ name, place, offset, kind }];
+      const kind = agrees ? (role?.is_check ? "check" : "used") : "wrong";
+      return place == null ? [] : [{ name, place, offset, kind }];
     });
   }
   return photos.flatMap(({ file, residual_m: residual }, i) => {
@@ -32,8 +32,9 @@ export function planResiduals(
 }
 
 /** What a point is for, in words. */
-export function roleText({ is_check, known }: ControlResidual["role"]): string {
-  const what = is_check ? "check" : "control";
+export function roleText(role: ControlResidual["role"]): string {
+  const what = role?.is_check ? "check" : "control";
+  const known = role?.known ?? "all";
   return known === "all" ? what : `${what}, ${known} only`;
 }
 

@@ -18,7 +18,10 @@ const GROUPS: readonly (readonly [title: string, files: Files])[] = [
       "roofs.json": "all of it for programs, with usable areas",
     },
   ],
-  ["CAD", { "model.ifc": "IFC4: roofs, their faces, walls, areas", "model.dxf": "3DFACE and LINE, AutoCAD R12" }],
+  [
+    "CAD",
+    { "model.ifc": "IFC4: roofs, their faces, walls, areas", "model.dxf": "3DFACE and LINE, AutoCAD R12" },
+  ],
   [
     "GIS",
     {
