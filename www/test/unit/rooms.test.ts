@@ -32,6 +32,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "app/session",
       "app/project",
       "app/project/flight",
+      "app/project/orienting/plans",
       "app/project/orienting",
       "app/project/photographs",
       "app/selection",

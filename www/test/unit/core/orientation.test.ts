@@ -1,8 +1,8 @@
 /** Photographs and pairs are dealt to workers, and what one has read is given to all. */
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { drawnPlan, exaggeration } from "../../../src/app/project/orienting/overlapGeometry";
 import { nearestMatch } from "../../../src/app/project/orienting/pairGeometry";
-import { planResiduals, rms, roleText } from "../../../src/app/project/orienting/residuals";
+import { drawnPlan, exaggeration } from "../../../src/app/project/orienting/plans/overlapGeometry";
+import { planResiduals, rms, roleText } from "../../../src/app/project/orienting/plans/residuals";
 import { OrientationRun, type OrientEvents } from "../../../src/core/orientation";
 import type { OrientReply, OrientRequest } from "../../../src/shared/orientation";
 

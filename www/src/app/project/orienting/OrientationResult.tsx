@@ -4,11 +4,11 @@ import { grouped } from "../../parts/numberText";
 import { askedBy, onPage } from "../../session/failureNotice";
 import { isBusy } from "../../state/activity";
 import { baseName } from "../inputFiles";
-import { ControlPoints } from "./ControlPoints";
 import { KnownLength } from "./KnownLength";
-import { OverlapPlan } from "./OverlapPlan";
-import { computeOrientation, saveOrientation, saveOrientationFiles } from "./orientation";
-import { ResidualPlan } from "./ResidualPlan";
+import { block, computeOrientation, saveOrientation, saveOrientationFiles } from "./orientation";
+import { ControlPoints } from "./plans/ControlPoints";
+import { OverlapPlan } from "./plans/OverlapPlan";
+import { ResidualPlan } from "./plans/ResidualPlan";
 
 const FILES: readonly (readonly [string, string])[] = [
   ["cameras.txt", "focal length, distortion"],
@@ -21,6 +21,7 @@ const FILES: readonly (readonly [string, string])[] = [
 export function OrientationResult({ report }: { report: OrientationReport }) {
   const all = report.photos.length + report.left_out.length;
   const [camera] = report.cameras;
+  const centres = block.value?.views.map(({ center }) => center) ?? [];
   return (
     <section class="result" data-testid="orientation-report" aria-label="Report of the orientation">
       <dl class="orientation-facts numbers">
@@ -61,9 +62,9 @@ export function OrientationResult({ report }: { report: OrientationReport }) {
         </>
       )}
       <ControlPoints control={report.control} />
-      <ResidualPlan report={report} />
+      <ResidualPlan report={report} centres={centres} />
       <KnownLength report={report} />
-      <OverlapPlan report={report} />
+      <OverlapPlan report={report} centres={centres} />
       <Photographs report={report} />
       <h3>Files of the orientation (COLMAP)</h3>
       <p>

@@ -1,6 +1,6 @@
 /** What is left at control points and stated positions: the numbers of tables and arrows. */
-import type { ControlResidual, OrientationReport } from "../../../shared/orientation";
-import type { Vec3 } from "../../../shared/records";
+import type { ControlResidual, OrientationReport } from "../../../../shared/orientation";
+import type { Vec3 } from "../../../../shared/records";
 
 /** A place of the plan, and by how far the block is off there in plan, metres; null where that is not known. */
 export interface PlanResidual {

@@ -1,5 +1,5 @@
 /** A plan of positions on a square drawing. */
-import type { Vec3 } from "../../../shared/records";
+import type { Vec3 } from "../../../../shared/records";
 
 /** Where positions stand on a drawing of `side` with a margin, y of the world upwards. */
 export function drawnPlan(positions: readonly Vec3[], side: number, margin: number): [number, number][] {

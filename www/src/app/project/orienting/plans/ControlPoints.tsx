@@ -1,5 +1,5 @@
 /** How far ground control points are from where the block puts them. */
-import type { ControlResidual } from "../../../shared/orientation";
+import type { ControlResidual } from "../../../../shared/orientation";
 import { rms, roleText } from "./residuals";
 
 export function ControlPoints({ control }: { control: readonly ControlResidual[] }) {

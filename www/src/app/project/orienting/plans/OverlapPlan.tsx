@@ -1,14 +1,13 @@
 /** Where the cameras stood, seen from above, and which of them show the same: the more points two share, the stronger their line. */
-import type { OrientationReport } from "../../../shared/orientation";
-import { counted } from "../../parts/counted";
-import { block } from "./orientation";
+import type { OrientationReport } from "../../../../shared/orientation";
+import type { Vec3 } from "../../../../shared/records";
+import { counted } from "../../../parts/counted";
 import { drawnPlan } from "./overlapGeometry";
 
 const SIDE = 260;
 const MARGIN = 20;
 
-export function OverlapPlan({ report }: { report: OrientationReport }) {
-  const centres = block.value?.views.map(({ center }) => center) ?? [];
+export function OverlapPlan({ report, centres }: { report: OrientationReport; centres: readonly Vec3[] }) {
   if (centres.length !== report.photos.length) {
     return null;
   }

@@ -1,16 +1,15 @@
 /** Where control points lie, or where photographs were taken, and by how far the block is off there, as arrows. */
-import type { OrientationReport } from "../../../shared/orientation";
-import { counted } from "../../parts/counted";
-import { baseName } from "../inputFiles";
-import { block } from "./orientation";
+import type { OrientationReport } from "../../../../shared/orientation";
+import type { Vec3 } from "../../../../shared/records";
+import { counted } from "../../../parts/counted";
+import { baseName } from "../../inputFiles";
 import { drawnPlan, exaggeration } from "./overlapGeometry";
 import { planResiduals } from "./residuals";
 
 const SIDE = 260;
 const MARGIN = 20;
 
-export function ResidualPlan({ report }: { report: OrientationReport }) {
-  const centres = block.value?.views.map(({ center }) => center) ?? [];
+export function ResidualPlan({ report, centres }: { report: OrientationReport; centres: readonly Vec3[] }) {
   const found = planResiduals(report, centres.length === report.photos.length ? centres : []);
   const offsets = found.map(({ offset }) => offset ?? ([0, 0] as const));
   if (found.length === 0) {
