@@ -15,7 +15,7 @@ const MOST_IN_ALL = 2_130_000;
 // Of the lessons, as static hosts serve them.
 const MOST_LESSONS = 80_000;
 // Of the second module alone, as the larger of two compressions.
-const MOST_SECOND_WASM = 615_000;
+const MOST_SECOND_WASM = 620_000;
 const ON_DEMAND = /(^|\/)(orientation|lessons|exercises)[^/]*$/i;
 
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));
