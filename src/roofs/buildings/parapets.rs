@@ -188,18 +188,23 @@ mod tests {
         testing::facet(&corners.map(|(x, y)| Point3::new(x, y, z)))
     }
 
-    #[test]
-    fn a_roof_is_found_below_its_parapet_and_what_stands_on_it() {
+    /// A roof at 5 m with a parapet of 0.4 m and machines of 0.8 m.
+    fn rimmed() -> Scene {
         let machines = |x: f64, y: f64| (1.0..3.5).contains(&x) && (-2.0..1.0).contains(&y);
         let roof = |x: f64, y: f64| x.abs() < 4.7 && y.abs() < 3.7;
         let parapet =
             |x: f64, y: f64| x.abs() < 5.0 && y.abs() < 4.0 && !(x.abs() < 4.7 && y.abs() < 3.7);
-        let rimmed = scene(&[
+        scene(&[
             textured(Plane::level(5.8), machines),
             textured(Plane::level(5.0), roof),
             textured(Plane::level(5.4), parapet),
             level_ground(),
-        ]);
+        ])
+    }
+
+    #[test]
+    fn a_roof_is_found_below_its_parapet_and_what_stands_on_it() {
+        let rimmed = rimmed();
         let (facets, parapets) = below_parapets(&rimmed, &[facet(5.4)], None);
         assert_eq!(parapets.len(), 1);
         assert!((parapets[0].height_m - 0.4).abs() < 0.05, "{parapets:?}");
@@ -207,6 +212,19 @@ mod tests {
         assert!(facets[0].outer.iter().all(|p| (p.z - 5.0).abs() < 0.05));
         let (facets, parapets) = below_parapets(&rimmed, &[facet(5.0)], None);
         assert_eq!((facets, parapets), (vec![facet(5.0)], Vec::new()));
+    }
+
+    #[test]
+    fn points_of_a_cloud_speak_for_the_height_at_which_they_lie() {
+        let rimmed = rimmed();
+        let nats = |z: Option<f64>| {
+            let cloud = z.map(|z| CloudEvidence::of_level_points(z, 1.0 - 1e-6));
+            below_parapets(&rimmed, &[facet(5.4)], cloud.as_ref()).1[0].nats
+        };
+        let photographs = nats(None);
+        // On the edges: all that they can say, which is that the cloud is hardly of elsewhere.
+        assert!((nats(Some(5.4)) - photographs - 1e-6_f64.ln()).abs() < 0.1);
+        assert!(nats(Some(5.0)) > photographs + 50.0);
     }
 
     #[test]

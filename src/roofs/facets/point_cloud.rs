@@ -205,7 +205,7 @@ impl CloudEvidence {
 
     /// The logarithm of a ratio that holds where the cloud belongs here.
     fn weighed(&self, ratio: f64) -> f64 {
-        ln(self.cloud.belongs * ratio + 1.0 - self.cloud.belongs)
+        ln(self.cloud.belongs * ratio + (1.0 - self.cloud.belongs))
     }
 }
 
@@ -231,5 +231,68 @@ impl OfPlane<'_> {
         let on_roof = (1.0 - params.off_share) * normal_density(off, self.sigma_m)
             + params.off_share / params.range_m;
         Some(on_roof / self.cloud.elsewhere[point])
+    }
+}
+
+#[cfg(test)]
+use {crate::base::params::PointCloudParams, nalgebra::Point3};
+
+#[cfg(test)]
+impl CloudEvidence {
+    /// That of points every half metre at one height over 10 m by 8 m around the origin, which
+    /// belong here with this probability.
+    pub(crate) fn of_level_points(z: f64, belongs: f64) -> Self {
+        let places = (-10..=10).flat_map(|x| (-8..=8).map(move |y| (x, y)));
+        let point = |(x, y)| Point3::new(0.5 * f64::from(x), 0.5 * f64::from(y), z);
+        let cloud = PlacedCloud {
+            points: places.map(point).collect(),
+            accuracy_m: 0.05,
+            belongs,
+            params: PointCloudParams::default(),
+        };
+        let plan = PlanGrid::covering(Point2::new(-5.0, -4.0), Point2::new(5.0, 4.0), 0.5);
+        Self::new(Arc::new(cloud), &Ground::level(0.0), &plan)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::roofs::testing;
+
+    #[test]
+    fn points_prefer_the_plane_that_they_lie_on_as_far_as_they_belong_here() {
+        let corners = [(-5.0, -4.0), (5.0, -4.0), (5.0, 4.0), (-5.0, 4.0)];
+        let facet = testing::facet(&corners.map(|(x, y)| Point3::new(x, y, 5.4)));
+        let [on, off] = [5.4, 5.0].map(Plane::level);
+        let surely = CloudEvidence::of_level_points(5.4, 1.0);
+        let nats = surely.prefers(&facet, &on, &off);
+        // A point that is eight standard deviations off is one that lies on no roof.
+        let params = PointCloudParams::default();
+        let stray = params.off_share / params.range_m;
+        let peak = (1.0 - params.off_share) * normal_density(0.0, 0.05);
+        let of_point = ln((peak + stray) / stray);
+        assert!(
+            (nats - (80.0 * of_point).min(LARGEST_ODDS_NATS)).abs() < 1e-6,
+            "{nats}"
+        );
+        assert!((nats + surely.prefers(&facet, &off, &on)).abs() < 1e-6);
+        assert_eq!(surely.prefers(&facet, &on, &on), 0.0);
+        // One that may be of elsewhere says less against a plane than that it is of elsewhere.
+        let hardly = CloudEvidence::of_level_points(5.4, 0.3);
+        let against = hardly.prefers(&facet, &off, &on);
+        assert!((against - ln(0.7)).abs() < 1e-6, "{against}");
+    }
+
+    #[test]
+    fn points_tell_a_roof_from_the_ground_and_from_a_plane_beside_it() {
+        let cloud = CloudEvidence::of_level_points(5.0, 1.0);
+        let at = Point2::new(1.1, -0.6);
+        let nats = |z: f64| cloud.of(&Plane::level(z)).nats_at(&at);
+        assert!(nats(5.0) > 3.0, "{}", nats(5.0));
+        assert!(nats(5.2) < nats(5.1) && nats(5.1) < nats(5.0));
+        assert!(nats(7.0) < 0.0);
+        let bare = CloudEvidence::of_level_points(0.0, 1.0);
+        assert!(bare.of(&Plane::level(5.0)).nats_at(&at) < -3.0);
     }
 }

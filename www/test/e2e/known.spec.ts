@@ -77,6 +77,8 @@ test("terrain and footprints are listed, compared with the images, and left out 
   await expect(found).toContainText("The images confirm it");
   await expect(found.locator("[data-outcome=agrees]")).toContainText(/^1 agrees.*House 1$/);
   await expect(found.locator("[data-outcome=contradicted]")).toContainText(/^1 contradicted.*On the lawn$/);
+  await waitForStage(page, "model");
+  await expect(tabOf(page, "Facets")).toHaveAttribute("aria-selected", "true");
 
   await test.step("a footprint is picked, and shown in the plan", async () => {
     await found.getByRole("button", { name: "On the lawn" }).click();

@@ -2,7 +2,7 @@
 import { announce } from "../state/notices";
 import { params } from "../state/parameters";
 import { mainResults, showPreliminary } from "../state/results";
-import { showTab } from "../state/viewState";
+import { leadTo } from "../state/viewState";
 import { workers } from "../state/workers";
 import { engine, workerPool } from "./session";
 
@@ -32,7 +32,7 @@ async function look(packed: Uint8Array<ArrayBuffer>, run: object): Promise<void>
   const isInTime = awaiting === run && mainResults.value.facets === null;
   if (facets !== null && facets.length > 0 && isInTime) {
     showPreliminary(facets);
-    showTab("model");
+    leadTo("model");
     announce("A preliminary model is shown");
   }
 }

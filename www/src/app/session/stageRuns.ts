@@ -39,7 +39,7 @@ import {
   stages,
   updateStage,
 } from "../state/stages";
-import { select, showPlane, showTab, tab } from "../state/viewState";
+import { beginLeading, leadTo, select, showPlane, showTab } from "../state/viewState";
 import { chooseWorkers, workers } from "../state/workers";
 import type { Turn } from "./actionQueue";
 import { workerNotice } from "./failureNotice";
@@ -92,6 +92,7 @@ export async function runStages(turn: Turn, target: StageName): Promise<void> {
   await ensureScene();
   const names = stages.value.map(({ name }) => name);
   const end = names.indexOf(target);
+  beginLeading();
   if (freshStages.value === 0 && names[end] === "model") {
     await beginFirstLook();
   }
@@ -238,8 +239,8 @@ async function runStage(name: StageName, position: number, taken: ParamTree): Pr
       select(null);
       // A preliminary model is looked at until its own facets take its place.
       const shown = shownTabOf(name, method.value);
-      if (shown !== null && (preliminaryFacets.value === null || tab.value !== "model")) {
-        showTab(shown);
+      if (shown !== null && preliminaryFacets.value === null) {
+        leadTo(shown);
       }
       updateStage(name, { ...summary, status: "done", fraction: 1, seconds });
       endStage(position);

@@ -60,6 +60,21 @@ export function showTab(name: Tab): void {
   }
 }
 
+/** Where a run has led; who is elsewhere has gone there, and stays. */
+let led: Tab = "images";
+
+export function beginLeading(): void {
+  led = tab.value;
+}
+
+/** Turns to what a run has found, where nobody has turned to something else since. */
+export function leadTo(name: Tab): void {
+  if (tab.value === led) {
+    showTab(name);
+    led = name;
+  }
+}
+
 const FACE_KEY = "ridgeline.face";
 
 /** Turns to a face; it stays over visits. */
