@@ -41,6 +41,12 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// it.
 pub(crate) const ON_LINE: f64 = 0.1;
 
+/// What a ratio of likelihoods says, nats, that holds with a probability and is one otherwise.
+pub(crate) fn nats_where_it_belongs(belongs: f64, ratio: f64) -> f64 {
+    // A certain source keeps odds that are lost beside one.
+    crate::base::math::ln(belongs * ratio + (1.0 - belongs))
+}
+
 /// What one feature of a candidate says.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]

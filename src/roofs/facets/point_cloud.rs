@@ -28,7 +28,7 @@ use std::sync::Arc;
 use nalgebra::{Point2, Vector2};
 
 use super::input::PlacedCloud;
-use crate::base::evidence::{EvidenceTerm, POINT_CLOUD};
+use crate::base::evidence::{EvidenceTerm, POINT_CLOUD, nats_where_it_belongs};
 use crate::base::geometry::Plane;
 use crate::base::math::{exp, hypot, larger, ln, normal_density};
 use crate::photographs::raster::mark_inside;
@@ -205,7 +205,7 @@ impl CloudEvidence {
 
     /// The logarithm of a ratio that holds where the cloud belongs here.
     fn weighed(&self, ratio: f64) -> f64 {
-        ln(self.cloud.belongs * ratio + (1.0 - self.cloud.belongs))
+        nats_where_it_belongs(self.cloud.belongs, ratio)
     }
 }
 

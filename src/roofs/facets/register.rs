@@ -24,7 +24,7 @@ pub use comparison::{FootprintFinding, FootprintVerdict, RegisterTrace};
 use nalgebra::{Point2, Vector2};
 
 use super::borders::Arrangement;
-use crate::base::evidence::EvidenceTerm;
+use crate::base::evidence::{EvidenceTerm, nats_where_it_belongs};
 use crate::base::math::{erfc, larger, ln, normal_density, smaller};
 use crate::base::params::RegisterParams;
 use crate::orienting::known::{Footprint, Register, belongs_here, best_shift};
@@ -269,7 +269,7 @@ impl<'a> RegisterEvidence<'a> {
 
     /// The logarithm of a ratio that holds where the register belongs here.
     fn weighed(&self, ratio: f64) -> f64 {
-        ln(self.belongs * ratio + 1.0 - self.belongs)
+        nats_where_it_belongs(self.belongs, ratio)
     }
 
     fn sample(&self, p: &Point2<f64>) -> Option<usize> {
