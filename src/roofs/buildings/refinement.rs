@@ -13,6 +13,7 @@ use crate::orienting::scene::Scene;
 use crate::planes::terrain::Ground;
 use crate::roofs::facets::CloudEvidence;
 use crate::roofs::model::{Facet, RoofModel};
+use crate::roofs::obstructions::{find_obstructions, take_out_islands};
 use crate::roofs::solids::{SolidTrace, close_above};
 
 /// The steps from closed buildings to refined ones.
@@ -42,8 +43,8 @@ pub struct UnrefinedFacets {
     pub sources: Vec<usize>,
 }
 
-/// Cuts facets back at gaps, refines the buildings, closes them again, and weighs the lines in
-/// them.
+/// Cuts facets back at gaps, refines the buildings, takes what is no roof out of them, closes them
+/// again, finds what stands on them, and weighs the lines in them.
 pub(crate) fn refine_buildings(
     scene: &Scene,
     lines: &[Line3d],
@@ -58,10 +59,12 @@ pub(crate) fn refine_buildings(
     let (refined, buildings) = refine_roofs(scene, lines, &delineated, &params.roof);
     reached(0.7);
     let (lowered, parapets) = below_parapets(scene, &refined, cloud);
-    let (model, closed) = close_above(&lowered, ground);
+    let (roofs, kept) = take_out_islands(&lowered);
+    let (mut model, closed) = close_above(&roofs, ground);
+    find_obstructions(scene, &mut model);
     let unrefined = UnrefinedFacets {
         facets: delineated.facets,
-        sources: closed.sources.clone(),
+        sources: closed.sources.iter().map(|&i| kept[i]).collect(),
     };
     let trace = RefinementTrace {
         gaps,
