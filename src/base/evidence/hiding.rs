@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use serde::Deserialize;
 
 use super::FeatureTable;
+use crate::base::math::hypot;
 
 /// How often colours differ by so much where a surface is seen, and where something hides it.
 #[derive(Clone, Debug, Deserialize)]
@@ -17,6 +18,10 @@ pub(crate) struct HidingTable {
     pub independent: f64,
     /// What a difference says, in standard deviations.
     difference: FeatureTable,
+    /// How far heights are off that seem to be known to the millimetre, metres.
+    height_floor_m: f64,
+    /// By how much more than it seems heights are off.
+    height_scale: f64,
 }
 
 impl HidingTable {
@@ -27,6 +32,11 @@ impl HidingTable {
             let fitted = serde_json::from_str(include_str!("hiding.json"));
             fitted.expect("the table is part of the program")
         })
+    }
+
+    /// Standard deviation of a height that seems to be known so well, metres.
+    pub(crate) fn inflated(&self, seeming_m: f64) -> f64 {
+        hypot(self.height_scale * seeming_m, self.height_floor_m)
     }
 
     /// How much likelier something hides a surface of which a view differs so much, nats.

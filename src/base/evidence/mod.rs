@@ -204,6 +204,7 @@ impl EvidenceModel {
             Self::of_rectangles(),
             Self::of_buildings(),
             Self::of_vegetation(),
+            Self::of_obstructions(),
         ];
         let mut features = models.into_iter().flat_map(|model| &model.features);
         features.find_map(|table| (table.name == name).then_some(&*table.name))

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::model_lines::{VerifiedLines, verify_lines};
 use super::parapets::{Parapet, below_parapets};
 use super::refine::{BuildingRefinement, RoofGap, cut_back_at_gaps, refine_roofs};
+use crate::base::evidence::JudgedFacet;
 use crate::base::execution::reached;
 use crate::base::params::Params;
 use crate::lines::lines3d::Line3d;
@@ -27,6 +28,8 @@ pub struct RefinementTrace {
     pub buildings: Vec<BuildingRefinement>,
     /// Roofs that lie below the edges that bound them.
     pub parapets: Vec<Parapet>,
+    /// Blocks that may stand on the roofs.
+    pub obstructions: Vec<JudgedFacet>,
     /// Walls and ground.
     pub solids: SolidTrace,
     /// What the model says of the lines.
@@ -61,7 +64,7 @@ pub(crate) fn refine_buildings(
     let (lowered, parapets) = below_parapets(scene, &refined, cloud);
     let (roofs, kept) = take_out_islands(&lowered);
     let (mut model, closed) = close_above(&roofs, ground);
-    find_obstructions(scene, &mut model);
+    let obstructions = find_obstructions(scene, &mut model);
     let unrefined = UnrefinedFacets {
         facets: delineated.facets,
         sources: closed.sources.iter().map(|&i| kept[i]).collect(),
@@ -71,6 +74,7 @@ pub(crate) fn refine_buildings(
         unrefined,
         buildings,
         parapets,
+        obstructions,
         solids: solids.then(closed),
         lines: verify_lines(scene, lines, &model, ground, params),
     };

@@ -106,13 +106,20 @@ impl Facet {
         contains(self.rings().flat_map(|ring| plan_sides(ring)), p)
     }
 
-    /// The same facet over one part of another polygon.
+    /// The same facet over one part of another polygon, with what stands there.
     pub fn over(&self, part: &Polygon) -> Self {
         let lift = |p: &Point2<f64>| self.plane.lift(p.x, p.y);
         let mut rings = (part.rings.iter()).map(|ring| ring.iter().map(lift).collect());
+        let stands_there = |o: &&Obstruction| part.contains(&mean_point(&o.outline));
         Self {
             outer: rings.next().unwrap_or_default(),
             holes: rings.collect(),
+            obstructions: self
+                .obstructions
+                .iter()
+                .filter(stands_there)
+                .cloned()
+                .collect(),
             ..self.clone()
         }
     }

@@ -122,6 +122,14 @@ impl Block {
         all
     }
 
+    /// So many metres wider on all sides.
+    pub(super) fn widened(&self, by: f64) -> Self {
+        Self {
+            half: self.half.map(|half| half + by),
+            ..*self
+        }
+    }
+
     fn axes(&self) -> [Vector2<f64>; 2] {
         [self.along, Vector2::new(-self.along.y, self.along.x)]
     }
@@ -155,12 +163,13 @@ impl Block {
         HidingTable::fitted().independent * seen.views.iter().map(of_view).sum::<f64>()
     }
 
-    /// Standard deviation of its height, metres: where the nats fall by one half.
+    /// Standard deviation of its height, metres: where the nats fall by one half, and what blocks
+    /// that are none add to it.
     pub(super) fn height_sigma(&self, seen: &SeenSurface, plane: &Plane) -> f64 {
         let at = |height: f64| Self { height, ..*self }.nats(seen, plane);
         let [below, here, above] = [-BEND_M, 0.0, BEND_M].map(|by| at(self.height + by));
         let bend = larger(2.0 * here - below - above, f64::MIN_POSITIVE).sqrt();
-        (BEND_M / bend).min(self.height)
+        HidingTable::fitted().inflated(BEND_M / bend)
     }
 }
 

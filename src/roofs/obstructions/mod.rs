@@ -23,10 +23,10 @@ use nalgebra::{Point2, Point3, Vector2};
 
 use self::block::Block;
 use self::surface::SeenSurface;
-use crate::base::evidence::{Evidence, EvidenceModel};
-use crate::base::geometry::{Polygon, plan_sides};
+use crate::base::evidence::{Evidence, EvidenceModel, JudgedFacet, WindowCounts};
+use crate::base::geometry::{Plane, Polygon, plan_sides};
 use crate::base::ids::ViewId;
-use crate::base::math::ln;
+use crate::base::math::{larger, ln};
 use crate::orienting::scene::{Scene, excess_green};
 use crate::roofs::facets::PartVisibility;
 use crate::roofs::model::{Facet, Obstruction, Occluders, RoofModel};
@@ -35,31 +35,52 @@ use crate::roofs::model::{Facet, Obstruction, Occluders, RoofModel};
 const FINEST_SAMPLE_M: f64 = 0.06;
 /// What lies so near to an obstruction may be its border, metres.
 const BORDER_M: f64 = 0.15;
+/// How far around a block the surface is looked at, metres.
+const AROUND_M: f64 = 0.3;
 /// A roof that falls by less has no direction: gradient.
 const LEVEL_GRADIENT: f64 = 0.05;
 
-/// Finds what stands on the facets of a model, and adds it to what is known to do so.
-pub(crate) fn find_obstructions(scene: &Scene, model: &mut RoofModel) {
+/// Finds what stands on the facets of a model, and adds it to what is known to do so. Returns all
+/// blocks that were weighed, by their tops.
+pub(crate) fn find_obstructions(scene: &Scene, model: &mut RoofModel) -> Vec<JudgedFacet> {
     let found = crate::base::execution::map(&model.facets, |i, facet| {
         let others = (model.facets.iter().enumerate()).filter(|(j, _)| *j != i);
         let others: Vec<Facet> = others.map(|(_, f)| f.clone()).collect();
         blocks_on(scene, facet, &Occluders::new(&others))
     });
-    let mut all: Vec<(usize, Obstruction, f64)> = (found.into_iter().enumerate())
-        .flat_map(|(i, blocks)| blocks.into_iter().map(move |(o, nats)| (i, o, nats)))
+    let mut judged: Vec<(usize, Weighed)> = (found.into_iter().enumerate())
+        .flat_map(|(i, blocks)| blocks.into_iter().map(move |block| (i, block)))
         .collect();
     // One on a ridge stands on both of its facets.
-    all.sort_by(|a, b| b.2.total_cmp(&a.2));
-    for (facet, obstruction, _) in all {
+    judged.sort_by(|(_, a), (_, b)| {
+        b.judged
+            .evidence
+            .nats()
+            .total_cmp(&a.judged.evidence.nats())
+    });
+    for (facet, weighed) in &mut judged {
         let mut others = model.facets.iter().flat_map(|f| &f.obstructions);
-        if !others.any(|other| other.shares_its_place(&obstruction)) {
-            model.facets[facet].obstructions.push(obstruction);
+        let is_known = others.any(|other| other.shares_its_place(&weighed.obstruction));
+        weighed.judged.accepted &= !is_known;
+        if weighed.judged.accepted {
+            let obstruction = weighed.obstruction.clone();
+            model.facets[*facet].obstructions.push(obstruction);
         }
     }
+    judged
+        .into_iter()
+        .map(|(_, weighed)| weighed.judged)
+        .collect()
 }
 
-/// What stands on a facet, and what speaks for each, nats.
-fn blocks_on(scene: &Scene, facet: &Facet, others: &Occluders) -> Vec<(Obstruction, f64)> {
+/// A block, and what speaks for it.
+struct Weighed {
+    obstruction: Obstruction,
+    judged: JudgedFacet,
+}
+
+/// What may stand on a facet.
+fn blocks_on(scene: &Scene, facet: &Facet, others: &Occluders) -> Vec<Weighed> {
     let Some(first) = facet.outer.first() else {
         return Vec::new();
     };
@@ -76,19 +97,28 @@ fn blocks_on(scene: &Scene, facet: &Facet, others: &Occluders) -> Vec<(Obstructi
     let mut found = Vec::new();
     while let Some((block, nats)) = Block::likeliest(&seen, &facet.plane, along) {
         let evidence = evidence_of(scene, facet, &seen, &block, nats);
-        if evidence.accepts(0.0) {
-            let obstruction = Obstruction {
-                outline: block.outline().to_vec(),
-                height_m: block.height,
-                height_sigma_m: Some(block.height_sigma(&seen, &facet.plane)),
-                probability: evidence.probability(),
-            };
-            found.push((obstruction, evidence.nats()));
-        }
-        let explained = Block {
-            half: block.half.map(|half| half + BORDER_M),
-            ..block
+        // A cell that is hidden in part differs like one that is hidden.
+        let outline = block.widened(-0.5 * step).outline();
+        let obstruction = Obstruction {
+            outline: outline.to_vec(),
+            height_m: block.height,
+            height_sigma_m: Some(block.height_sigma(&seen, &facet.plane)),
+            probability: evidence.probability(),
         };
+        let top = facet.plane.z_at(block.middle.x, block.middle.y) + block.height;
+        let judged = JudgedFacet {
+            outline: block.outline().map(|p| Point3::new(p.x, p.y, top)).to_vec(),
+            holes: Vec::new(),
+            plane: Plane::level(top),
+            accepted: evidence.accepts(0.0),
+            evidence,
+            windows: WindowCounts::default(),
+        };
+        found.push(Weighed {
+            obstruction,
+            judged,
+        });
+        let explained = block.widened(BORDER_M);
         let shades: Vec<Vec<Point2<f64>>> = (seen.views.iter())
             .map(|view| explained.shade(&seen, view, &facet.plane))
             .collect();
@@ -110,6 +140,13 @@ fn direction_of(facet: &Facet) -> Vector2<f64> {
     direction.try_normalize(0.0).unwrap_or(Vector2::x())
 }
 
+/// What the views say of the cells that a block hides: nats, and their number.
+fn said_of(seen: &SeenSurface, block: &Block, plane: &Plane) -> [f64; 2] {
+    let of_views =
+        (seen.views.iter()).map(|view| seen.within(view, &block.shade(seen, view, plane)));
+    of_views.fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
+}
+
 /// What speaks for a block and against it.
 fn evidence_of(
     scene: &Scene,
@@ -118,15 +155,8 @@ fn evidence_of(
     block: &Block,
     nats: f64,
 ) -> Evidence {
-    let said = seen
-        .views
-        .iter()
-        .map(|view| seen.within(view, &block.shade(seen, view, &facet.plane)));
-    let said: Vec<[f64; 2]> = said.filter(|[_, cells]| *cells > 0.0).collect();
-    let total = said
-        .iter()
-        .fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
-    let means = said.iter().map(|[nats, cells]| nats / cells);
+    let [total, wide] = [*block, block.widened(AROUND_M)].map(|b| said_of(seen, &b, &facet.plane));
+    let around = [wide[0] - total[0], wide[1] - total[1]];
     let outline: Polygon = block.outline().to_vec().into();
     let top = facet.plane.z_at(block.middle.x, block.middle.y) + block.height;
     let places: Vec<Point3<f64>> = (block.outline().iter())
@@ -136,8 +166,8 @@ fn evidence_of(
         .collect();
     EvidenceModel::of_obstructions().weigh(&[
         ("ln_nats", ln(nats)),
-        ("nats_a_cell", total[0] / total[1].max(1.0)),
-        ("least_nats_a_cell", means.fold(f64::INFINITY, f64::min)),
+        ("nats_a_cell", total[0] / larger(total[1], 1.0)),
+        ("nats_a_cell_around", around[0] / larger(around[1], 1.0)),
         ("height_m", block.height),
         ("ln_area_m2", ln(outline.area())),
         ("width_m", 2.0 * block.half[0].min(block.half[1])),
@@ -149,7 +179,6 @@ fn evidence_of(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::geometry::Plane;
     use crate::planes::rendered_planes::{level_ground, scene, textured};
     use crate::roofs::testing;
 
