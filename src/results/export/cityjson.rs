@@ -21,7 +21,8 @@ use crate::orienting::scene::Scene;
 use crate::results::roof_report::{Estimate, Lengths, RoofEdgeKind};
 use crate::results::texture::{FaceTexture, TexturedModel};
 use crate::roofs::model::{
-    Building, BuildingWalls, Facet, FacetUncertainty, RoofModel, SideUncertainty, Solid, Surface,
+    Building, BuildingWalls, Facet, FacetUncertainty, Obstruction, RoofModel, SideUncertainty,
+    Solid, Surface,
 };
 use crate::roofs::solids::WRITTEN_STEP_M;
 
@@ -60,7 +61,15 @@ pub(super) fn city_json(
         if let Some(walls) = walls.get(i) {
             add_walls(&mut object, walls, &mut shared, first);
         }
-        objects.insert(format!("building-{i}"), object);
+        let name = format!("building-{i}");
+        objects.extend(installations(
+            &name,
+            model,
+            building,
+            &mut object,
+            &mut shared,
+        ));
+        objects.insert(name, object);
     }
     let mut file = head(scene, &shared.vertices);
     file["CityObjects"] = Value::Object(objects);
@@ -89,10 +98,13 @@ pub(super) fn city_json_seq(
         if let Some(walls) = walls.get(i) {
             add_walls(&mut object, walls, &mut own, 0);
         }
+        let mut objects: Map<_, _> =
+            installations(&id, model, building, &mut object, &mut own).collect();
+        objects.insert(id.clone(), object);
         features.push(json!({
             "type": "CityJSONFeature",
             "id": id,
-            "CityObjects": { id.as_str(): object },
+            "CityObjects": objects,
             "vertices": own.vertices,
             "appearance": own.appearance(),
         }));
@@ -178,8 +190,12 @@ impl Shared {
 
 /// The corners in whole steps.
 pub(super) fn whole_corners(solid: &Solid) -> impl Iterator<Item = [i64; 3]> {
-    let whole = |c: f64| (c / WRITTEN_STEP_M).round() as i64;
-    (solid.vertices.iter()).map(move |p| [whole(p.x), whole(p.y), whole(p.z)])
+    solid.vertices.iter().map(whole_steps)
+}
+
+/// A position in whole steps.
+pub(super) fn whole_steps(p: &Point3<f64>) -> [i64; 3] {
+    [p.x, p.y, p.z].map(|c| (c / WRITTEN_STEP_M).round() as i64)
 }
 
 fn building_object(
@@ -244,6 +260,53 @@ fn add_walls(object: &mut Value, walls: &BuildingWalls, shared: &mut Shared, fir
         let corners = shared.add_more(solid, first);
         all.push(walled_solid(walls, solid, &corners));
     }
+}
+
+/// What stands on the roof of a building, whose children they become: without the faces in which
+/// they meet the roof.
+fn installations(
+    name: &str,
+    model: &RoofModel,
+    building: &Building,
+    object: &mut Value,
+    shared: &mut Shared,
+) -> std::vec::IntoIter<(String, Value)> {
+    let roof = building.facets.iter().map(|f| &model.facets[f.index()]);
+    let all = roof.flat_map(|facet| facet.obstructions.iter().map(move |o| (facet, o)));
+    let installation = |(k, (facet, obstruction)): (usize, (&Facet, &Obstruction))| {
+        let mut corner = |p: &Point3<f64>| {
+            shared.vertices.push(whole_steps(p));
+            shared.vertices.len() - 1
+        };
+        let faces = facet.faces_of(obstruction);
+        let faces: Vec<[Vec<usize>; 1]> = (faces.iter())
+            .map(|ring| [ring.iter().map(&mut corner).collect()])
+            .collect();
+        let Obstruction {
+            height_m,
+            height_sigma_m,
+            probability,
+            ..
+        } = *obstruction;
+        let height = Estimate {
+            value: height_m,
+            sigma: height_sigma_m,
+        };
+        let mut attributes = json!({ "probability": rounded(probability, 4) });
+        add(&mut attributes, "height", height);
+        let object = json!({
+            "type": "BuildingInstallation",
+            "parents": [name],
+            "attributes": attributes,
+            "geometry": [{ "type": "MultiSurface", "lod": "2.2", "boundaries": faces }],
+        });
+        (format!("{name}-obstruction-{k}"), object)
+    };
+    let all: Vec<_> = all.enumerate().map(installation).collect();
+    if !all.is_empty() {
+        object["children"] = all.iter().map(|(name, _)| name.as_str()).collect();
+    }
+    all.into_iter()
 }
 
 /// Adds a number and its standard deviation.

@@ -15,7 +15,7 @@ use crate::orienting::known::json_of;
 use crate::orienting::orientation::{FrameSigma, PlanUnit, SystemUnits, epsg_of, units_of};
 use crate::orienting::scene::Survey;
 use crate::roofs::model::{
-    CornerUncertainty, Facet, FacetUncertainty, SideSupport, SideUncertainty, Surface,
+    CornerUncertainty, Facet, FacetUncertainty, Obstruction, SideSupport, SideUncertainty, Surface,
 };
 
 /// Roofs are no steeper than this, as the vertical part of a unit normal; what is called a roof and
@@ -72,6 +72,18 @@ fn read_model(bytes: &[u8]) -> Result<ReportedModel, String> {
                 read.walls.push(walls_of(&object["attributes"]));
                 let stated = frame_sigma(&object["attributes"][FRAME_SIGMA]);
                 read.survey.frame_sigma = read.survey.frame_sigma.or(stated);
+            }
+        }
+    }
+    for (_, object) in &objects {
+        if object["type"] == "BuildingInstallation" {
+            let building = read
+                .names
+                .iter()
+                .position(|b| object["parents"][0] == b.as_str());
+            let found = building.zip(obstruction_of(object, &vertices));
+            if let Some((building, obstruction)) = found {
+                read.add_obstruction(building, obstruction);
             }
         }
     }
@@ -247,7 +259,23 @@ fn facet_of(id: BuildingId, plane: Plane, rings: &[Vec<Point3<f64>>], surface: &
         lines: Vec::new(),
         half_planes: Vec::new(),
         proposals: Vec::new(),
+        obstructions: Vec::new(),
     }
+}
+
+/// What stands on a roof, by its first face, which is its top, and its height; `None` where the
+/// file states none of these.
+fn obstruction_of(object: &Value, vertices: &[Point3<f64>]) -> Option<Obstruction> {
+    let geometry = &object["geometry"][0];
+    let number = |name: &str| object["attributes"][name].as_f64();
+    let top = ring_of(&geometry["boundaries"][0][0], vertices);
+    let top = top.filter(|_| geometry["type"] == "MultiSurface")?;
+    Some(Obstruction {
+        outline: top.iter().map(|p| p.xy()).collect(),
+        height_m: number("height")?,
+        height_sigma_m: number("heightSigma"),
+        probability: number("probability").unwrap_or(1.0),
+    })
 }
 
 fn uncertainty_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<FacetUncertainty> {

@@ -12,7 +12,8 @@ use crate::base::geometry::plan_sides;
 use crate::base::ids::{BuildingId, FacetId};
 use crate::orienting::scene::{Scene, Survey};
 use crate::roofs::model::{
-    BuildingWalls, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideUncertainty, Surface,
+    BuildingWalls, CornerUncertainty, Facet, FacetUncertainty, Obstruction, RoofModel,
+    SideUncertainty, Surface,
 };
 use crate::roofs::solids::WRITTEN_STEP_M;
 
@@ -60,6 +61,10 @@ impl ReportedModel {
             let faces = faces.collect();
             let ground_m = rounded(building.ground_z + scene.origin.z, 4);
             if written.add_building(faces, Some(ground_m - scene.origin.z)) {
+                let last = written.model.buildings.len() - 1;
+                let facets = building.facets.iter().map(|f| &model.facets[f.index()]);
+                let obstructions = facets.flat_map(|facet| &facet.obstructions);
+                obstructions.for_each(|o| written.add_obstruction(last, written_obstruction(o)));
                 written.names.push(format!("building-{i}"));
                 written.walls.push(
                     walls
@@ -95,10 +100,21 @@ impl ReportedModel {
             lines: Vec::new(),
             half_planes: Vec::new(),
             proposals: Vec::new(),
+            obstructions: Vec::new(),
         });
         self.photographs
             .push(measured.photographs[id.index()].clone());
         Surface::Roof(next)
+    }
+}
+
+fn written_obstruction(obstruction: &Obstruction) -> Obstruction {
+    let steps = |c: f64| (c / WRITTEN_STEP_M).round() * WRITTEN_STEP_M;
+    Obstruction {
+        outline: (obstruction.outline.iter()).map(|p| p.map(steps)).collect(),
+        height_m: rounded(obstruction.height_m, 4),
+        height_sigma_m: obstruction.height_sigma_m.map(|sigma| rounded(sigma, 4)),
+        probability: rounded(obstruction.probability, 4),
     }
 }
 

@@ -51,6 +51,8 @@ export async function buildModel(
     }
   });
   const textured = new Map(meshes.map((mesh) => [mesh, mesh.material as Material]));
+  const own = [...new Set(textured.values())] as MeshBasicMaterial[];
+  const colours = new Map(own.map((material) => [material, material.color.clone()]));
   await inShortTasks(meshes, addTint);
   const normals = new MeshBasicMaterial({
     vertexColors: true,
@@ -81,9 +83,9 @@ export async function buildModel(
     highlight(selection: Selection | null) {
       const isChosen = (mesh: Mesh) => matches(mesh, selection);
       const chosen = meshes.filter(isChosen);
-      for (const material of new Set(textured.values())) {
+      for (const [material, colour] of colours) {
         const tint = chosen.length > 0 ? DIMMED : new Color(1, 1, 1);
-        (material as MeshBasicMaterial).color?.copy(tint);
+        material.color.copy(colour).multiply(tint);
       }
       marker.show(chosen.length === 0 ? null : markerOf(chosen));
     },

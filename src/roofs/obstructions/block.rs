@@ -1,0 +1,198 @@
+//! The upright block that explains best what hides a roof.
+
+use nalgebra::{Point2, Point3, Vector2};
+
+use super::surface::{SeenFrom, SeenSurface};
+use crate::base::evidence::HidingTable;
+use crate::base::geometry::{Plane, convex_hull};
+use crate::base::math::larger;
+
+/// Heights at which something is looked for, metres: from a curb to a tall chimney.
+const HEIGHTS_M: [f64; 6] = [0.3, 0.45, 0.7, 1.0, 1.5, 2.2];
+/// Half the side of a block that is looked for, metres: a chimney's.
+const HALF_M: f64 = 0.25;
+/// Steps in which a block is moved and resized at first, metres, and how often they are halved.
+const FIRST_STEP_M: f64 = 0.2;
+const HALVINGS: usize = 5;
+/// Largest block that one search ends with, metres: higher ones are other roofs, or trees.
+const HIGHEST_M: f64 = 4.0;
+/// Change of the height by which its standard deviation is found, metres.
+const BEND_M: f64 = 0.1;
+
+/// A block with a level top. Its base lies on a facet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Block {
+    pub middle: Point2<f64>,
+    /// Unit vector along one of its sides, in plan.
+    pub along: Vector2<f64>,
+    /// Half the lengths of its sides, along and across, metres.
+    pub half: [f64; 2],
+    /// Of its top above the facet at its middle, metres.
+    pub height: f64,
+}
+
+impl Block {
+    /// The block that something speaks most for, of those with sides along a direction, and what
+    /// speaks for it, nats; `None` where no more does than for the best of so many places by chance.
+    pub(super) fn likeliest(
+        seen: &SeenSurface,
+        plane: &Plane,
+        along: Vector2<f64>,
+    ) -> Option<(Self, f64)> {
+        let independent = HidingTable::fitted().independent;
+        let half_cells = (HALF_M / seen.grid.step).round().max(1.0) as usize;
+        // Neighbouring places say the same.
+        let stride = half_cells.div_ceil(2);
+        let rows = (0..seen.grid.height).step_by(stride);
+        let places: Vec<Point2<f64>> = rows
+            .flat_map(|row| {
+                (0..seen.grid.width)
+                    .step_by(stride)
+                    .map(move |column| (column, row))
+            })
+            .map(|(column, row)| seen.grid.center(column, row))
+            .collect();
+        let votes = places.iter().flat_map(|place| {
+            HEIGHTS_M.map(|height| {
+                let vote = |view: &SeenFrom| votes_of(seen, view, plane, place, height, half_cells);
+                (place, height, seen.views.iter().map(vote).sum::<f64>())
+            })
+        });
+        let (place, height, votes) = votes.max_by(|a, b| a.2.total_cmp(&b.2))?;
+        let by_chance = crate::base::math::ln((places.len() * HEIGHTS_M.len()) as f64);
+        if independent * votes < by_chance {
+            return None;
+        }
+        let block = Self {
+            middle: *place,
+            along,
+            half: [HALF_M; 2],
+            height,
+        };
+        Some(block.fitted(seen, plane))
+    }
+
+    /// Moved and resized as long as more speaks for it.
+    fn fitted(mut self, seen: &SeenSurface, plane: &Plane) -> (Self, f64) {
+        let mut nats = self.nats(seen, plane);
+        let mut step = FIRST_STEP_M;
+        for _ in 0..HALVINGS {
+            loop {
+                let better = (self.neighbours(step).into_iter())
+                    .map(|block| (block, block.nats(seen, plane)))
+                    .max_by(|a, b| a.1.total_cmp(&b.1))
+                    .filter(|(_, other)| *other > nats);
+                let Some((block, other)) = better else {
+                    break;
+                };
+                (self, nats) = (block, other);
+            }
+            step *= 0.5;
+        }
+        (self, nats)
+    }
+
+    /// The blocks with one number changed by a step.
+    fn neighbours(&self, step: f64) -> Vec<Self> {
+        let mut all = Vec::new();
+        for by in [-step, step] {
+            all.push(Self {
+                height: self.height + by,
+                ..*self
+            });
+            for (side, direction) in self.axes().into_iter().enumerate() {
+                all.push(Self {
+                    middle: self.middle + direction * by,
+                    ..*self
+                });
+                // One side moves, the other one stays.
+                for end in [-0.5, 0.5] {
+                    let mut block = *self;
+                    block.half[side] += 0.5 * by;
+                    block.middle += direction * (end * by);
+                    all.push(block);
+                }
+            }
+        }
+        let is_block = |b: &Self| {
+            let least = b.half[0].min(b.half[1]).min(b.height);
+            least >= 0.5 * FIRST_STEP_M && b.height <= HIGHEST_M
+        };
+        all.retain(is_block);
+        all
+    }
+
+    /// So many metres wider on all sides.
+    pub(super) fn widened(&self, by: f64) -> Self {
+        Self {
+            half: self.half.map(|half| half + by),
+            ..*self
+        }
+    }
+
+    fn axes(&self) -> [Vector2<f64>; 2] {
+        [self.along, Vector2::new(-self.along.y, self.along.x)]
+    }
+
+    /// Its outline from above, counter-clockwise.
+    pub(super) fn outline(&self) -> [Point2<f64>; 4] {
+        let [a, b] = self.axes();
+        let [a, b] = [a * self.half[0], b * self.half[1]];
+        [-a - b, a - b, a + b, b - a].map(|by| self.middle + by)
+    }
+
+    /// What it hides of the facet in a view: a convex ring.
+    pub(super) fn shade(
+        &self,
+        seen: &SeenSurface,
+        view: &SeenFrom,
+        plane: &Plane,
+    ) -> Vec<Point2<f64>> {
+        let base = self.outline();
+        let top = plane.z_at(self.middle.x, self.middle.y) + self.height;
+        let above = base.map(|p| Point3::new(p.x, p.y, larger(top, plane.z_at(p.x, p.y))));
+        let hides: Vec<Point2<f64>> = (base.into_iter())
+            .chain(above.iter().map(|p| seen.seen_at(view, p)))
+            .collect();
+        convex_hull(&hides)
+    }
+
+    /// What the views say for it, nats.
+    pub(super) fn nats(&self, seen: &SeenSurface, plane: &Plane) -> f64 {
+        let of_view = |view: &SeenFrom| seen.within(view, &self.shade(seen, view, plane))[0];
+        HidingTable::fitted().independent * seen.views.iter().map(of_view).sum::<f64>()
+    }
+
+    /// Standard deviation of its height, metres: where the nats fall by one half, and what blocks
+    /// that are none add to it.
+    pub(super) fn height_sigma(&self, seen: &SeenSurface, plane: &Plane) -> f64 {
+        let at = |height: f64| Self { height, ..*self }.nats(seen, plane);
+        let [below, here, above] = [-BEND_M, 0.0, BEND_M].map(|by| at(self.height + by));
+        let bend = larger(2.0 * here - below - above, f64::MIN_POSITIVE).sqrt();
+        HidingTable::fitted().inflated(BEND_M / bend)
+    }
+}
+
+/// What a view says of something as wide as a small block up to a height over a place.
+fn votes_of(
+    seen: &SeenSurface,
+    view: &SeenFrom,
+    plane: &Plane,
+    place: &Point2<f64>,
+    height: f64,
+    half_cells: usize,
+) -> f64 {
+    let mut base = plane.lift(place.x, place.y);
+    base.z += height;
+    let lean = seen.seen_at(view, &base) - place;
+    let steps = (lean.norm() / (2.0 * HALF_M)).ceil().max(1.0) as usize;
+    (0..=steps)
+        .map(|k| {
+            seen.around(
+                view,
+                &(place + lean * (k as f64 / steps as f64)),
+                half_cells,
+            )
+        })
+        .sum()
+}
