@@ -104,7 +104,7 @@ if [ "${1:-all}" = all ]; then
     # While tests that end late leave a core free.
     start wasm wasm-pack test --node --mode no-install tests/wasm --profile page
     step native cargo cargo test --quiet --no-fail-fast
-    # One core is enough for it.
+    # What computes natively and in wasm side by side, and leaves gaps for what needs one core.
     start identical node tests/wasm/identical.mjs target/debug/ridgeline
     step doc check env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet
     step wasm cargo finished wasm

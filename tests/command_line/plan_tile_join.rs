@@ -44,26 +44,36 @@ impl Block {
         assert!(model_of("scene", "a") == model_of("scene.zip", "b"));
     }
 
-    /// A plan without parts.
-    fn planned() -> Self {
-        Self::planned_of(crate::common::synthetic_files())
-    }
-
-    fn planned_of(files: Vec<(String, Vec<u8>)>) -> Self {
+    /// Without a plan.
+    fn of(files: Vec<(String, Vec<u8>)>) -> Self {
         let block = Self(tempfile::tempdir().unwrap());
         for (path, bytes) in files {
             let path = block.scene().join(path);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(path, bytes).unwrap();
         }
+        block
+    }
+
+    /// A plan without parts.
+    fn planned() -> Self {
+        let block = Self::of(crate::common::synthetic_files());
         let output = block.plan("120", &block.folder());
         assert!(output.status.success(), "{}", words(&output));
         block
     }
 
+    /// The reference's plan, which is that of the same scene.
+    fn with_plan() -> Self {
+        let block = Self::of(crate::common::synthetic_files());
+        fs::create_dir(block.folder()).unwrap();
+        fs::write(block.folder().join("tiles.json"), &reference().plan).unwrap();
+        block
+    }
+
     /// The reference's plan with its parts, and a scene of its own.
     fn done() -> Self {
-        let block = Self::planned();
+        let block = Self::with_plan();
         fs::create_dir(block.folder().join("parts")).unwrap();
         for tile in 1..=TILES {
             fs::write(block.part(tile), &reference().parts[tile as usize - 1]).unwrap();
@@ -183,7 +193,7 @@ fn report(bytes: &[u8]) -> Value {
 
 #[test]
 fn parts_of_many_processes_are_the_model_of_one() {
-    let block = Block::planned();
+    let block = Block::of(crate::common::synthetic_files());
     let whole_of = |tile_m: &str| {
         let mut command = block.command();
         command.args(["reconstruct", "scene", "--tile", tile_m, "--out", tile_m]);
@@ -233,7 +243,7 @@ fn a_plan_says_what_each_tile_reads() {
 
 #[test]
 fn without_a_region_the_area_is_what_three_views_show() {
-    let block = Block::planned();
+    let block = Block::of(crate::common::synthetic_files());
     let mut command = block.command();
     command.args(["plan", "scene", "--tile", "60", "--out", "all"]);
     let output = command.output().unwrap();
@@ -334,7 +344,7 @@ fn missing_truncated_and_foreign_parts_are_refused_by_name() {
     );
     fs::write(block.part(2), two).unwrap();
     // The third tile is empty in another plan, too.
-    let other = Block::planned();
+    let other = Block::of(crate::common::synthetic_files());
     assert!(other.plan("121", &other.folder()).status.success());
     assert!(other.tile(3).status.success());
     let foreign = fs::read(other.part(3)).unwrap();
@@ -459,7 +469,7 @@ impl<'a> FewViews<'a> {
 
 #[test]
 fn a_tile_reads_its_own_photographs_and_the_first_bytes_of_the_others() {
-    let block = Block::planned();
+    let block = Block::of(crate::common::synthetic_files());
     let few = FewViews::of(&block);
     assert_eq!(few.views().len(), 3);
     assert!(few.make().status.success());
@@ -511,7 +521,7 @@ fn tiff_files() -> Vec<(String, Vec<u8>)> {
 
 #[test]
 fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
-    let block = Block::planned_of(tiff_files());
+    let block = Block::of(tiff_files());
     let few = FewViews::of(&block);
     let images = block.scene().join("images");
     let head = |name: &str| {
@@ -560,7 +570,7 @@ fn a_tile_reads_the_directories_of_tiffs_that_are_not_its_own() {
 #[test]
 fn a_killed_process_leaves_no_half_part_and_changes_no_byte() {
     let [of_tile, of_join] = reference().times;
-    let block = Block::planned();
+    let block = Block::with_plan();
     let kill_after = |mut command: Command, time: Duration| {
         let quiet = command.stdout(Stdio::null()).stderr(Stdio::null());
         let mut process = quiet.spawn().unwrap();

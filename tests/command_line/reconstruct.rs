@@ -105,6 +105,15 @@ impl Scene {
             .unwrap()
     }
 
+    fn check(&self, more: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_ridgeline"))
+            .arg("check")
+            .arg(self.0.path().join("scene"))
+            .args(more)
+            .output()
+            .unwrap()
+    }
+
     /// Runs, and expects a refusal that names all of `words` and leaves no model behind.
     fn is_refused(&self, more: &[&str], words: &[&str]) {
         let output = self.run(more);
@@ -146,11 +155,7 @@ fn archives_and_folders_stand_for_their_files() {
     fs::remove_dir_all(scene.0.path().join("scene/images")).unwrap();
     scene.write("flight/photographs.zip", &zipped(&images));
     assert!(!others.is_empty());
-    let checked = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
-        .arg("check")
-        .arg(scene.0.path().join("scene"))
-        .output()
-        .unwrap();
+    let checked = scene.check(&[]);
     let printed = String::from_utf8_lossy(&checked.stdout);
     assert!(
         printed.contains("agree:") && printed.contains("s2_03.png"),
@@ -308,8 +313,7 @@ fn duplicate_names_are_refused() {
     scene.write("again/s1_02.png", &image);
     scene.write("more/s1_02.png", &image);
     // What lies in `images` is taken.
-    assert!(scene.run(&[]).status.success());
-    fs::remove_dir_all(scene.out()).unwrap();
+    assert!(scene.check(&[]).status.success());
     fs::remove_file(scene.0.path().join("scene/images/s1_02.png")).unwrap();
     scene.is_refused(&[], &["again/s1_02.png", "more/s1_02.png", "same name"]);
 }
@@ -469,11 +473,7 @@ fn linked_folders_belong_to_the_scene() {
     symlink("../flight", folder.join("images")).unwrap();
     symlink(".", folder.join("around")).unwrap();
     symlink("nowhere", folder.join("old")).unwrap();
-    let checked = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
-        .arg("check")
-        .arg(&folder)
-        .output()
-        .unwrap();
+    let checked = scene.check(&[]);
     let notices = String::from_utf8_lossy(&checked.stderr);
     assert!(checked.status.success(), "{notices}");
     for words in [
@@ -521,38 +521,30 @@ fn tiles_give_the_model_of_the_whole() {
 
 #[test]
 fn a_check_says_what_the_images_say() {
-    let check = |scene: &Scene, more: &[&str]| {
-        Command::new(env!("CARGO_BIN_EXE_ridgeline"))
-            .arg("check")
-            .arg(scene.0.path().join("scene"))
-            .args(more)
-            .output()
-            .unwrap()
-    };
     let scene = Scene::new();
-    let printed = check(&scene, &[]);
+    let printed = scene.check(&[]);
     let words = String::from_utf8_lossy(&printed.stdout);
     assert!(printed.status.success());
     assert!(
         words.contains("images and orientation agree:") && words.contains("s2_03.png"),
         "{words}"
     );
-    let json = check(&scene, &["--json"]).stdout;
+    let json = scene.check(&["--json"]).stdout;
     let found: serde_json::Value = serde_json::from_slice(&json).unwrap();
     assert_eq!(found["agreement"]["finding"], "sound");
     let adjustment = |more: &[&str]| {
-        let found = check(&scene, more).stdout;
+        let found = scene.check(more).stdout;
         let found: serde_json::Value = serde_json::from_slice(&found).unwrap();
         found["views"][0]["adjustment"].clone()
     };
-    assert_eq!(adjustment(&["--json"])["rms_motion_px"], 0.0);
+    assert_eq!(found["views"][0]["adjustment"]["rms_motion_px"], 0.0);
     assert!(adjustment(&["--json", "--no-adjust"]).is_null());
     assert!(adjustment(&["--json", "--adjust"]).is_object());
-    assert!(!check(&scene, &["--adjust", "--no-adjust"]).status.success());
+    assert!(!scene.check(&["--adjust", "--no-adjust"]).status.success());
     // What it prints is an orientation itself.
     fs::remove_dir_all(scene.0.path().join("scene/colmap")).unwrap();
     scene.write("checked.json", &json);
-    let again = check(&scene, &["--json"]).stdout;
+    let again = scene.check(&["--json"]).stdout;
     let again: serde_json::Value = serde_json::from_slice(&again).unwrap();
     for (a, b) in found["views"]
         .as_array()
@@ -567,7 +559,7 @@ fn a_check_says_what_the_images_say() {
     }
 
     let broken = Scene::with_list(|a| a.map(|a| a / 0.9));
-    let refused = check(&broken, &["--json"]);
+    let refused = broken.check(&["--json"]);
     assert_eq!(refused.status.code(), Some(2));
     let found: serde_json::Value = serde_json::from_slice(&refused.stdout).unwrap();
     assert_eq!(found["agreement"]["finding"], "explained");

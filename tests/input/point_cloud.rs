@@ -2,7 +2,7 @@
 //! or of another place are named.
 #![allow(clippy::disallowed_methods)]
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::common::clouds::{is_inside, las, plan, points};
 use nalgebra::{Point2, Point3, Vector2};
@@ -35,9 +35,28 @@ fn files(scene: &Scene) -> Vec<InputFile> {
         .collect()
 }
 
+fn loaded(scene: &Scene) -> Scene {
+    load_scene(&files(scene), &LoadOptions::default()).unwrap()
+}
+
+/// A gabled house as it is loaded, and what it is, once for all tests.
+fn house() -> &'static (Scene, SyntheticTruth) {
+    static HOUSE: OnceLock<(Scene, SyntheticTruth)> = OnceLock::new();
+    HOUSE.get_or_init(|| {
+        let (scene, truth) = gable_scene(SIZE_PX);
+        (loaded(&scene), truth)
+    })
+}
+
+/// What its photographs alone show.
+fn without_a_cloud() -> &'static Run {
+    static RUN: OnceLock<Run> = OnceLock::new();
+    RUN.get_or_init(|| run(&house().0, None))
+}
+
 /// Runs all stages up to the facets.
 fn run(scene: &Scene, cloud: Option<Arc<PointCloud>>) -> Run {
-    let mut scene = load_scene(&files(scene), &LoadOptions::default()).unwrap();
+    let mut scene = scene.clone();
     scene.known.point_cloud = cloud;
     let mut run = Run::new(scene, Params::default());
     run.step(Stage::Facets, &ridgeline::silent());
@@ -123,6 +142,7 @@ fn with_a_bare_slope() -> (Scene, SyntheticTruth) {
 #[test]
 fn a_slope_that_no_photograph_shows_is_found_by_the_cloud() {
     let (scene, truth) = with_a_bare_slope();
+    let scene = loaded(&scene);
     let without = run(&scene, None);
     assert!(
         found(&without, &truth, 0) < 0.3,
@@ -142,13 +162,13 @@ fn a_slope_that_no_photograph_shows_is_found_by_the_cloud() {
 
 #[test]
 fn a_moved_cloud_is_named_and_moved_back() {
-    let (scene, truth) = gable_scene(SIZE_PX);
-    let points = points(&truth);
-    let right = run(&scene, cloud(&points, [0.0; 3]));
+    let (scene, truth) = house();
+    let points = points(truth);
+    let right = run(scene, cloud(&points, [0.0; 3]));
     assert_eq!(comparison(&right).compared.verdict, KnownVerdict::Used);
     assert!(comparison(&right).compared.belongs > 0.95);
     for by in [[0.8, 0.6, 0.0], [0.0, 0.0, 46.2], [-1.2, 0.5, -31.0]] {
-        let moved = run(&scene, cloud(&points, by));
+        let moved = run(scene, cloud(&points, by));
         let found = comparison(&moved);
         assert_eq!(found.compared.verdict, KnownVerdict::Moved, "{found:?}");
         // Along the ridge only the verges tell.
@@ -163,19 +183,18 @@ fn a_moved_cloud_is_named_and_moved_back() {
                 .contains("was moved by")
         );
         for facet in [0, 1] {
-            assert!(self::found(&moved, &truth, facet) > 0.9);
+            assert!(self::found(&moved, truth, facet) > 0.9);
         }
     }
 }
 
 #[test]
 fn a_cloud_of_another_place_is_left_out_and_changes_nothing() {
-    let (scene, truth) = gable_scene(SIZE_PX);
-    let without = run(&scene, None);
+    let (scene, truth) = house();
     // The house stands 14 m away there, and another one higher and turned.
     let elsewhere = |p: &Point3<f64>| Point3::new(p.y + 9.0, 11.0 - p.x, 1.3 * p.z);
-    let foreign: Vec<Point3<f64>> = points(&truth).iter().map(elsewhere).collect();
-    let with = run(&scene, cloud(&foreign, [0.0; 3]));
+    let foreign: Vec<Point3<f64>> = points(truth).iter().map(elsewhere).collect();
+    let with = run(scene, cloud(&foreign, [0.0; 3]));
     let found = comparison(&with);
     assert_eq!(
         found.compared.verdict,
@@ -189,19 +208,18 @@ fn a_cloud_of_another_place_is_left_out_and_changes_nothing() {
             .unwrap()
             .contains("contradict")
     );
-    let models = [&without, &with].map(|run| run.results().roof_model().unwrap());
+    let models = [without_a_cloud(), &with].map(|run| run.results().roof_model().unwrap());
     assert_eq!(models[0], models[1]);
 }
 
 #[test]
 fn clouds_of_few_points_do_nothing() {
-    let (scene, truth) = gable_scene(SIZE_PX);
-    let without = run(&scene, None);
+    let (scene, truth) = house();
     for few in [0, 1, 20] {
-        let some: Vec<Point3<f64>> = points(&truth).into_iter().take(few).collect();
-        let with = run(&scene, cloud(&some, [0.0; 3]));
+        let some: Vec<Point3<f64>> = points(truth).into_iter().take(few).collect();
+        let with = run(scene, cloud(&some, [0.0; 3]));
         assert_eq!(comparison(&with).compared.verdict, KnownVerdict::Elsewhere);
-        let models = [&without, &with].map(|run| run.results().roof_model().unwrap());
+        let models = [without_a_cloud(), &with].map(|run| run.results().roof_model().unwrap());
         assert_eq!(models[0], models[1]);
     }
 }
@@ -341,16 +359,16 @@ fn beside_a_grid_a_cloud_is_roofs_only_and_of_several_none_is_taken() {
 
 #[test]
 fn shares_of_all_and_nothing_and_no_error_at_all_give_numbers() {
-    let (scene, truth) = gable_scene(SIZE_PX);
+    let (scene, truth) = house();
     let mut params = Params::default();
     params.point_cloud.belongs = 1.0;
     params.point_cloud.agreement = 1.0;
     params.point_cloud.chance = 0.0;
     params.point_cloud.place_sigma_m = 0.0;
-    let mut scene = load_scene(&files(&scene), &LoadOptions::default()).unwrap();
+    let mut scene = scene.clone();
     let exact = PointCloud {
         accuracy_m: 0.0,
-        ..(*cloud(&points(&truth), [0.0; 3]).unwrap()).clone()
+        ..(*cloud(&points(truth), [0.0; 3]).unwrap()).clone()
     };
     scene.known.point_cloud = Some(Arc::new(exact));
     let mut run = Run::new(scene, params);

@@ -7,7 +7,8 @@
 //
 // Ends with exit code 1 and the names of the files that differ or are wrong.
 
-import { spawnSync } from "node:child_process";
+import { spawn } from "node:child_process";
+import { once } from "node:events";
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
@@ -24,12 +25,15 @@ const validator = createRequire(join(root, "www/package.json"))("gltf-validator"
 const bad = [];
 const synthetic = mkdtempSync(join(tmpdir(), "ridgeline-"));
 try {
-    const scenes = given ? [given] : [join(root, "www/public/demo"), ...writeSynthetic()];
+    const scenes = given ? [given] : [join(root, "www/public/demo"), ...(await writeSynthetic())];
     for (const [place, scene] of scenes.entries()) {
         // Method "combined" has the stages of the others; by themselves "coplanar" and "adjacency" do more in their own.
         const methods = place < 2 ? ["lines", "rectangles", "combined", "coplanar", "adjacency"] : ["combined"];
-        for (const method of methods) bad.push(...(await compare(scene, method)));
-        if (place === 0) bad.push(...(await compareCorrected(scene)));
+        for (const method of methods) {
+            const { bad: wrong, native } = await compare(scene, method, []);
+            bad.push(...wrong);
+            if (place === 0 && method === "lines") bad.push(...(await compareCorrected(scene, native)));
+        }
     }
     if (!given) bad.push(...(await compareOrientation(join(root, "www/test/fixtures/drone"))));
 } finally {
@@ -38,23 +42,23 @@ try {
 process.exit(bad.length === 0 ? 0 : 1);
 
 // The folders of the synthetic scenes.
-function writeSynthetic() {
-    run(join(dirname(binary), "examples/synthetic"), [synthetic]);
+async function writeSynthetic() {
+    await run(join(dirname(binary), "examples/synthetic"), [synthetic]);
     const scenes = readdirSync(synthetic).sort();
     if (scenes.length === 0) throw new Error("no synthetic scene was written");
     return scenes.map((name) => join(synthetic, name));
 }
 
-function run(program, args) {
-    const { status, error } = spawnSync(program, args, { stdio: ["ignore", "ignore", "inherit"] });
-    if (status !== 0) throw error ?? new Error(`${program} ended with exit code ${status}`);
+async function run(program, args) {
+    const [status] = await once(spawn(program, args, { stdio: ["ignore", "ignore", "inherit"] }), "close");
+    if (status !== 0) throw new Error(`${program} ended with exit code ${status}`);
 }
 
-// The same with corrections of what the scene itself shows.
-async function compareCorrected(scene) {
-    const city = JSON.parse(runNative(scene, "lines").get("model.city.json").toString());
+// The same with corrections of what was found in the scene itself.
+async function compareCorrected(scene, found) {
+    const city = JSON.parse(found.get("model.city.json").toString());
     const corrections = correctionsOf(city, await sceneOf(scene));
-    const { bad, report } = await compareRuns(scene, "lines", corrections);
+    const { bad, report } = await compare(scene, "lines", corrections);
     const { counts } = report.stages.find(({ stage }) => stage === "corrections");
     console.log(`${basename(scene)}: ${counts.corrections} of ${corrections.length} corrections applied`);
     return counts.corrections === corrections.length ? bad : [...bad, "corrections"];
@@ -118,14 +122,12 @@ function correctionsOf({ CityObjects, transform: { scale, translate }, vertices 
     ];
 }
 
-// The names of the files that differ or are wrong.
-async function compare(scene, method) {
-    return (await compareRuns(scene, method, [])).bad;
-}
-
-async function compareRuns(scene, method, corrections) {
-    const native = runNative(scene, method, corrections);
-    const wasm = await runWasm(scene, method, corrections);
+// The names of the files that differ or are wrong, the report, and the files of the command line.
+async function compare(scene, method, corrections) {
+    const [native, wasm] = await Promise.all([
+        runNative(scene, method, corrections),
+        runWasm(scene, method, corrections),
+    ]);
     const names = [...new Set([...native.keys(), ...wasm.keys()])].sort();
     if (!names.includes("model.glb")) throw new Error("no model was written");
     const differing = names.filter((name) => !same(name, native.get(name), wasm.get(name)));
@@ -141,16 +143,18 @@ async function compareRuns(scene, method, corrections) {
         console.log(`${basename(scene)}: the point cloud is ${compared?.verdict}, with ${planes?.length ?? 0} planes`);
         if (!(planes?.length > 0)) bad.push("point cloud");
     }
-    return { bad, report };
+    return { bad, report, native };
 }
 
 // The same for photographs alone.
 async function compareOrientation(photographs) {
     const out = mkdtempSync(join(tmpdir(), "ridgeline-"));
     try {
-        run(binary, ["orient", photographs, "--out", out]);
+        const [, wasm] = await Promise.all([
+            run(binary, ["orient", photographs, "--out", out]),
+            orientInWasm(photographs),
+        ]);
         const native = new Map(readdirSync(out).map((name) => [name, readFileSync(join(out, name))]));
-        const wasm = await orientInWasm(photographs);
         const names = [...new Set([...native.keys(), ...wasm.keys()])].sort();
         if (!names.includes("images.txt")) throw new Error("no orientation was written");
         const differing = names.filter((name) => !same(name, native.get(name), wasm.get(name)));
@@ -203,14 +207,15 @@ function cloudOf(scene) {
     return readdirSync(scene).find((name) => /\.la[sz]$/i.test(name));
 }
 
-function runNative(scene, method, corrections = []) {
+// As a process of its own, while wasm computes.
+async function runNative(scene, method, corrections = []) {
     const [out, beside] = [0, 1].map(() => mkdtempSync(join(tmpdir(), "ridgeline-")));
     try {
         const list = join(beside, "corrections.json");
         writeFileSync(list, JSON.stringify(corrections));
         const cloud = cloudOf(scene);
         const known = cloud === undefined ? [] : ["--point-cloud", join(scene, cloud)];
-        run(binary, ["reconstruct", scene, "--out", out, "--method", method, "--corrections", list, ...known]);
+        await run(binary, ["reconstruct", scene, "--out", out, "--method", method, "--corrections", list, ...known]);
         return new Map(readdirSync(out).map((name) => [name, readFileSync(join(out, name))]));
     } finally {
         for (const folder of [out, beside]) rmSync(folder, { recursive: true });

@@ -1,6 +1,8 @@
 //! A planted scene for the tests: a flat roof 6 m above textured ground, seen from two strips flown
 //! in opposite directions, with the segments that a detector would give.
 
+use std::sync::OnceLock;
+
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector3};
 
 use crate::base::geometry::{Segment2, Segment3, rotation_from_axis_angle};
@@ -120,9 +122,11 @@ const POSITIONS: [(f64, f64, f64); 5] = [
     (0.0, -42.0, 0.01),
 ];
 
-/// The flat roof.
+/// The flat roof, rendered once for all tests.
 pub(crate) fn scene() -> Scene {
-    scene_of(&POSITIONS, |camera| render(camera, Cover::Flat))
+    static FLAT: OnceLock<Scene> = OnceLock::new();
+    let rendered = || scene_of(&POSITIONS, |camera| render(camera, Cover::Flat));
+    FLAT.get_or_init(rendered).clone()
 }
 
 /// A gable roof with baselines three times as long: views 0 and 1 of one strip, 2 of another one

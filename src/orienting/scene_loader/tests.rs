@@ -394,7 +394,7 @@ fn distorted(view: &View, lens: &Distortion) -> image::RgbImage {
             (f64::from(row) + 0.5 - k[(1, 2)]) / k[(1, 1)],
         );
         let mut ideal = seen;
-        for _ in 0..30 {
+        for _ in 0..10 {
             ideal += seen - lens.distort(&ideal);
         }
         let (x, y) = (

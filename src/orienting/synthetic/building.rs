@@ -9,6 +9,7 @@ use crate::base::geometry::{Segment3, sides};
 use crate::base::math;
 
 /// A house on its ground, ready to render, and what a reconstruction should find.
+#[derive(Debug)]
 pub(crate) struct SyntheticBuilding {
     pub faces: Vec<RenderedFace>,
     pub truth: SyntheticTruth,

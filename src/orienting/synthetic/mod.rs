@@ -25,6 +25,9 @@ mod truth;
 pub use files::{to_colmap, to_files, to_photogrammetric, to_projection};
 pub use truth::SyntheticTruth;
 
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use crate::orienting::orientation::rotation_from_omega_phi_kappa;
@@ -110,7 +113,25 @@ fn scene_of(building: &building::SyntheticBuilding, size: u32) -> (Scene, Synthe
     scene_seen_by(building, &strip_cameras(size))
 }
 
+/// What was rendered before: few scenes are asked for many times.
+static RENDERED: Mutex<BTreeMap<String, (Scene, SyntheticTruth)>> = Mutex::new(BTreeMap::new());
+
 fn scene_seen_by(
+    building: &building::SyntheticBuilding,
+    cameras: &[(String, Camera)],
+) -> (Scene, SyntheticTruth) {
+    let all_rendered = || RENDERED.lock().unwrap_or_else(PoisonError::into_inner);
+    let key = format!("{building:?}{cameras:?}");
+    let before = all_rendered().get(&key).cloned();
+    before.unwrap_or_else(|| {
+        // Not locked meanwhile: who waits for its rays may take up a task that wants a scene.
+        let scene = rendered(building, cameras);
+        all_rendered().insert(key, scene.clone());
+        scene
+    })
+}
+
+fn rendered(
     building: &building::SyntheticBuilding,
     cameras: &[(String, Camera)],
 ) -> (Scene, SyntheticTruth) {

@@ -99,7 +99,7 @@ fn pixel(
 /// Colour of the first face that a ray meets.
 fn nearest(candidates: &[&ProjectedFace], center: &Point3<f64>, ray: &Vector3<f64>) -> [f64; 3] {
     let mut nearest = f64::INFINITY;
-    let mut colour = [0.0; 3];
+    let mut met = None;
     for visible in candidates {
         let t = -visible.height / visible.face.plane.normal.dot(ray);
         if !(t > 0.0 && t < nearest) {
@@ -109,10 +109,13 @@ fn nearest(candidates: &[&ProjectedFace], center: &Point3<f64>, ray: &Vector3<f6
         let uv = in_frame(&visible.face.axes, &d);
         if visible.face.contains(&uv) {
             nearest = t;
-            colour = visible.face.surface.colour(uv.x, uv.y, visible.light);
+            met = Some((visible, uv));
         }
     }
-    colour
+    let colour = |(visible, uv): (&&ProjectedFace, Point2<f64>)| {
+        visible.face.surface.colour(uv.x, uv.y, visible.light)
+    };
+    met.map_or([0.0; 3], colour)
 }
 
 /// A face as one camera sees it.

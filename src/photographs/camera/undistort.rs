@@ -240,6 +240,9 @@ mod tests {
             let off = at - lens.distort(&ideal);
             let r2 = ideal.coords.norm_squared();
             ideal += off * (1.0 + 0.5 * r2);
+            if off.amax() < 1e-13 {
+                break;
+            }
         }
         ideal
     }

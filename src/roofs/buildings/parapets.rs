@@ -223,7 +223,7 @@ mod tests {
         };
         let photographs = nats(None);
         // On the edges: all that they can say, which is that the cloud is hardly of elsewhere.
-        assert!((nats(Some(5.4)) - photographs - 1e-6_f64.ln()).abs() < 0.1);
+        assert!((nats(Some(5.4)) - photographs - crate::base::math::ln(1e-6)).abs() < 0.1);
         assert!(nats(Some(5.0)) > photographs + 50.0);
     }
 
