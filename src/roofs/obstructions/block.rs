@@ -15,7 +15,7 @@ const HALF_M: f64 = 0.25;
 const FIRST_STEP_M: f64 = 0.2;
 const HALVINGS: usize = 5;
 /// Largest block that one search ends with, metres: higher ones are other roofs, or trees.
-const HIGHEST_M: f64 = 4.0;
+const HEIGHT_LIMIT_M: f64 = 4.0;
 /// Change of the height by which its standard deviation is found, metres.
 const BEND_M: f64 = 0.1;
 
@@ -116,7 +116,7 @@ impl Block {
         }
         let is_block = |b: &Self| {
             let least = b.half[0].min(b.half[1]).min(b.height);
-            least >= 0.5 * FIRST_STEP_M && b.height <= HIGHEST_M
+            least >= 0.5 * FIRST_STEP_M && b.height <= HEIGHT_LIMIT_M
         };
         all.retain(is_block);
         all

@@ -32,11 +32,11 @@ use crate::roofs::facets::PartVisibility;
 use crate::roofs::model::{Facet, Obstruction, Occluders, RoofModel};
 
 /// Least distance of samples, metres, as where facets are found.
-const FINEST_SAMPLE_M: f64 = 0.06;
+pub(crate) const FINEST_SAMPLE_M: f64 = 0.06;
 /// What lies so near to an obstruction may be its border, metres.
 const BORDER_M: f64 = 0.15;
 /// How far around a block the surface is looked at, metres.
-const AROUND_M: f64 = 0.3;
+const RING_WIDTH_M: f64 = 0.3;
 /// A roof that falls by less has no direction: gradient.
 const LEVEL_GRADIENT: f64 = 0.05;
 
@@ -155,7 +155,8 @@ fn evidence_of(
     block: &Block,
     nats: f64,
 ) -> Evidence {
-    let [total, wide] = [*block, block.widened(AROUND_M)].map(|b| said_of(seen, &b, &facet.plane));
+    let [total, wide] =
+        [*block, block.widened(RING_WIDTH_M)].map(|b| said_of(seen, &b, &facet.plane));
     let around = [wide[0] - total[0], wide[1] - total[1]];
     let outline: Polygon = block.outline().to_vec().into();
     let top = facet.plane.z_at(block.middle.x, block.middle.y) + block.height;
