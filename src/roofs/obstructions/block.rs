@@ -33,7 +33,8 @@ pub(super) struct Block {
 
 impl Block {
     /// The block that something speaks most for, of those with sides along a direction, and what
-    /// speaks for it, nats; `None` where no more does than for the best of so many places by chance.
+    /// speaks for it, nats; `None` where no more does than for the best of so many places by
+    /// chance.
     pub(super) fn likeliest(
         seen: &SeenSurface,
         plane: &Plane,
@@ -69,7 +70,8 @@ impl Block {
             half: [HALF_M; 2],
             height,
         };
-        Some(block.fitted(seen, plane))
+        // Each one that is returned explains something: the search ends.
+        Some(block.fitted(seen, plane)).filter(|(_, nats)| *nats > by_chance)
     }
 
     /// Moved and resized as long as more speaks for it.

@@ -1,8 +1,8 @@
 //! Facets that stand on another one and are no roofs by their size.
 //!
 //! A box on a flat roof, or a dormer, has a plane that the views confirm, so it is found as a facet
-//! in a hole of the one below. Whether that is part of the roof is a matter of its size: what people
-//! draw as one is a table ([`EvidenceModel::of_islands`]).
+//! in a hole of the one below. Whether that is part of the roof is a matter of its size: what
+//! people draw as one is a table ([`EvidenceModel::of_islands`]).
 
 use nalgebra::{Point2, Point3};
 

@@ -33,6 +33,8 @@ use crate::roofs::model::{Facet, Obstruction, Occluders, RoofModel};
 
 /// Least distance of samples, metres, as where facets are found.
 pub(crate) const FINEST_SAMPLE_M: f64 = 0.06;
+/// Cells of a surface: those of the largest halls are wider, and none takes more than 80 MB.
+const SURFACE_CELLS: f64 = 4e5;
 /// What lies so near to an obstruction may be its border, metres.
 const BORDER_M: f64 = 0.15;
 /// How far around a block the surface is looked at, metres.
@@ -86,7 +88,9 @@ fn blocks_on(scene: &Scene, facet: &Facet, others: &Occluders) -> Vec<Weighed> {
     };
     let pixels = scene.views.iter().map(|v| v.camera.ground_pixel(first));
     let pixel = pixels.fold(f64::INFINITY, f64::min);
-    let step = pixel.max(FINEST_SAMPLE_M);
+    let [min, max] = facet.plan_bounds();
+    let finest = ((max.x - min.x) * (max.y - min.y) / SURFACE_CELLS).sqrt();
+    let step = larger(larger(pixel, FINEST_SAMPLE_M), finest);
     let hidden = |v: ViewId, p: &Point3<f64>| others.hide(p, &scene.camera(v).center);
     let visibility = PartVisibility::new(scene, facet, step, &hidden);
     let hidden = |v: ViewId, p: &Point3<f64>| visibility.is_hidden(v, &p.xy());

@@ -118,7 +118,7 @@ impl SeenSurface {
         sum(r1, c1) - sum(r1, c0) - sum(r0, c1) + sum(r0, c0)
     }
 
-    /// Leaves the cells inside convex rings, one for each view, out of what is still to be explained.
+    /// Leaves the cells inside convex rings, one for each view, out of what is to be explained.
     pub(super) fn explain(&mut self, rings: &[Vec<Point2<f64>>]) {
         let mut views = std::mem::take(&mut self.views);
         for (view, ring) in views.iter_mut().zip(rings) {
