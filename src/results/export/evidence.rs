@@ -8,8 +8,9 @@ use crate::base::evidence::{Candidates, Evidence, JudgedFacet, JudgedLine, Windo
 use crate::orienting::scene::Scene;
 
 /// `evidence.json`: every matched line, every line in the finished model, every facet, every block
-/// on a roof and every plane between parallel lines that was weighed, every surface of dense matching, and the classes
-/// in which the windows of the facets are counted. World frame of the input.
+/// on a roof and every plane between parallel lines that was weighed, every surface of dense
+/// matching, and the classes in which the windows of the facets are counted. World frame of the
+/// input.
 pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
     let line = |line: &JudgedLine| {
         json!({
