@@ -5,7 +5,7 @@ use nalgebra::{Point2, Point3, Vector2};
 use super::surface::{SeenFrom, SeenSurface};
 use crate::base::evidence::HidingTable;
 use crate::base::geometry::{Plane, convex_hull};
-use crate::base::math::larger;
+use crate::base::math::{larger, ln};
 
 /// Heights at which something is looked for, metres: from a curb to a tall chimney.
 const HEIGHTS_M: [f64; 6] = [0.3, 0.45, 0.7, 1.0, 1.5, 2.2];
@@ -32,50 +32,56 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// The block that something speaks most for, of those with sides along a direction, and what
-    /// speaks for it, nats; `None` where no more does than for the best of so many places by
-    /// chance.
-    pub(super) fn likeliest(
+    /// Small blocks with sides along a direction for which more speaks than for the best of so many
+    /// places by chance, the likeliest first, and what speaks for that one, nats.
+    pub(super) fn likely(
         seen: &SeenSurface,
         plane: &Plane,
         along: Vector2<f64>,
-    ) -> Option<(Self, f64)> {
-        let independent = HidingTable::fitted().independent;
-        let half_cells = (HALF_M / seen.grid.step).round().max(1.0) as usize;
+    ) -> (Vec<Self>, f64) {
+        let half_cells = seen.cells_of(HALF_M);
         // Neighbouring places say the same.
         let stride = half_cells.div_ceil(2);
-        let rows = (0..seen.grid.height).step_by(stride);
-        let places: Vec<Point2<f64>> = rows
-            .flat_map(|row| {
-                (0..seen.grid.width)
-                    .step_by(stride)
-                    .map(move |column| (column, row))
-            })
-            .map(|(column, row)| seen.grid.center(column, row))
-            .collect();
-        let votes = places.iter().flat_map(|place| {
-            HEIGHTS_M.map(|height| {
-                let vote = |view: &SeenFrom| votes_of(seen, view, plane, place, height, half_cells);
-                (place, height, seen.views.iter().map(vote).sum::<f64>())
+        let places = || {
+            let rows = (0..seen.grid.height).step_by(stride);
+            rows.flat_map(|row| (0..seen.grid.width).step_by(stride).map(move |c| (c, row)))
+        };
+        let by_chance = ln((places().count() * HEIGHTS_M.len()) as f64);
+        let blocks = places().flat_map(|(column, row)| {
+            HEIGHTS_M.map(|height| Self {
+                middle: seen.grid.center(column, row),
+                along,
+                half: [HALF_M; 2],
+                height,
             })
         });
-        let (place, height, votes) = votes.max_by(|a, b| a.2.total_cmp(&b.2))?;
-        let by_chance = crate::base::math::ln((places.len() * HEIGHTS_M.len()) as f64);
-        if independent * votes < by_chance {
-            return None;
-        }
-        let block = Self {
-            middle: *place,
-            along,
-            half: [HALF_M; 2],
-            height,
+        let mut likely: Vec<(Self, f64)> = blocks
+            .map(|block| (block, block.votes(seen, plane)))
+            .filter(|(_, votes)| *votes > by_chance)
+            .collect();
+        likely.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let likely = likely.into_iter().map(|(block, _)| block);
+        (likely.collect(), by_chance)
+    }
+
+    /// About what the views say for it, nats: of squares from its base to where its top is seen.
+    pub(super) fn votes(&self, seen: &SeenSurface, plane: &Plane) -> f64 {
+        let half_cells = seen.cells_of(HALF_M);
+        let mut top = plane.lift(self.middle.x, self.middle.y);
+        top.z += self.height;
+        let of_view = |view: &SeenFrom| {
+            let lean = seen.seen_at(view, &top) - self.middle;
+            let steps = (lean.norm() / (2.0 * HALF_M)).ceil().max(1.0) as usize;
+            let places = (0..=steps).map(|k| self.middle + lean * (k as f64 / steps as f64));
+            places
+                .map(|p| seen.around(view, &p, half_cells))
+                .sum::<f64>()
         };
-        // Each one that is returned explains something: the search ends.
-        Some(block.fitted(seen, plane)).filter(|(_, nats)| *nats > by_chance)
+        HidingTable::fitted().independent * seen.views.iter().map(of_view).sum::<f64>()
     }
 
     /// Moved and resized as long as more speaks for it.
-    fn fitted(mut self, seen: &SeenSurface, plane: &Plane) -> (Self, f64) {
+    pub(super) fn fitted(mut self, seen: &SeenSurface, plane: &Plane) -> (Self, f64) {
         let mut nats = self.nats(seen, plane);
         let mut step = FIRST_STEP_M;
         for _ in 0..HALVINGS {
@@ -173,28 +179,4 @@ impl Block {
         let bend = larger(2.0 * here - below - above, f64::MIN_POSITIVE).sqrt();
         HidingTable::fitted().inflated(BEND_M / bend)
     }
-}
-
-/// What a view says of something as wide as a small block up to a height over a place.
-fn votes_of(
-    seen: &SeenSurface,
-    view: &SeenFrom,
-    plane: &Plane,
-    place: &Point2<f64>,
-    height: f64,
-    half_cells: usize,
-) -> f64 {
-    let mut base = plane.lift(place.x, place.y);
-    base.z += height;
-    let lean = seen.seen_at(view, &base) - place;
-    let steps = (lean.norm() / (2.0 * HALF_M)).ceil().max(1.0) as usize;
-    (0..=steps)
-        .map(|k| {
-            seen.around(
-                view,
-                &(place + lean * (k as f64 / steps as f64)),
-                half_cells,
-            )
-        })
-        .sum()
 }

