@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Point3;
+use nalgebra::{Point2, Point3};
 use serde_json::{Map, Value, json};
 
 use super::format::{ATLAS_FILE, rounded, to_bytes};
@@ -29,6 +29,8 @@ use crate::roofs::solids::WRITTEN_STEP_M;
 /// Name of the appearance theme.
 const THEME: &str = "photographs";
 
+/// The attribute of a roof surface that says what stands on it.
+pub(super) const OBSTRUCTIONS: &str = "obstructions";
 /// The attribute of a building that says what scale and level of the frame are worth, and its
 /// members.
 pub(super) const FRAME_SIGMA: &str = "frameSigma";
@@ -61,15 +63,7 @@ pub(super) fn city_json(
         if let Some(walls) = walls.get(i) {
             add_walls(&mut object, walls, &mut shared, first);
         }
-        let name = format!("building-{i}");
-        objects.extend(installations(
-            &name,
-            model,
-            building,
-            &mut object,
-            &mut shared,
-        ));
-        objects.insert(name, object);
+        objects.insert(format!("building-{i}"), object);
     }
     let mut file = head(scene, &shared.vertices);
     file["CityObjects"] = Value::Object(objects);
@@ -98,13 +92,10 @@ pub(super) fn city_json_seq(
         if let Some(walls) = walls.get(i) {
             add_walls(&mut object, walls, &mut own, 0);
         }
-        let mut objects: Map<_, _> =
-            installations(&id, model, building, &mut object, &mut own).collect();
-        objects.insert(id.clone(), object);
         features.push(json!({
             "type": "CityJSONFeature",
             "id": id,
-            "CityObjects": objects,
+            "CityObjects": { id.as_str(): object },
             "vertices": own.vertices,
             "appearance": own.appearance(),
         }));
@@ -190,12 +181,8 @@ impl Shared {
 
 /// The corners in whole steps.
 pub(super) fn whole_corners(solid: &Solid) -> impl Iterator<Item = [i64; 3]> {
-    solid.vertices.iter().map(whole_steps)
-}
-
-/// A position in whole steps.
-pub(super) fn whole_steps(p: &Point3<f64>) -> [i64; 3] {
-    [p.x, p.y, p.z].map(|c| (c / WRITTEN_STEP_M).round() as i64)
+    let whole = |c: f64| (c / WRITTEN_STEP_M).round() as i64;
+    (solid.vertices.iter()).map(move |p| [whole(p.x), whole(p.y), whole(p.z)])
 }
 
 fn building_object(
@@ -217,7 +204,7 @@ fn building_object(
             .map(|ring| ring.iter().map(|&v| offset + v as usize).collect())
             .collect();
         boundaries.push(rings);
-        surfaces.push(semantic_surface(model, measured, face.surface));
+        surfaces.push(semantic_surface(scene, (model, measured), face.surface));
         texture_values.push(texture_of_rings(texture, shared));
     }
     let values: Vec<usize> = (0..surfaces.len()).collect();
@@ -260,53 +247,6 @@ fn add_walls(object: &mut Value, walls: &BuildingWalls, shared: &mut Shared, fir
         let corners = shared.add_more(solid, first);
         all.push(walled_solid(walls, solid, &corners));
     }
-}
-
-/// What stands on the roof of a building, whose children they become: without the faces in which
-/// they meet the roof.
-fn installations(
-    name: &str,
-    model: &RoofModel,
-    building: &Building,
-    object: &mut Value,
-    shared: &mut Shared,
-) -> std::vec::IntoIter<(String, Value)> {
-    let roof = building.facets.iter().map(|f| &model.facets[f.index()]);
-    let all = roof.flat_map(|facet| facet.obstructions.iter().map(move |o| (facet, o)));
-    let installation = |(k, (facet, obstruction)): (usize, (&Facet, &Obstruction))| {
-        let mut corner = |p: &Point3<f64>| {
-            shared.vertices.push(whole_steps(p));
-            shared.vertices.len() - 1
-        };
-        let faces = facet.faces_of(obstruction);
-        let faces: Vec<[Vec<usize>; 1]> = (faces.iter())
-            .map(|ring| [ring.iter().map(&mut corner).collect()])
-            .collect();
-        let Obstruction {
-            height_m,
-            height_sigma_m,
-            probability,
-            ..
-        } = *obstruction;
-        let height = Estimate {
-            value: height_m,
-            sigma: height_sigma_m,
-        };
-        let mut attributes = json!({ "probability": rounded(probability, 4) });
-        add(&mut attributes, "height", height);
-        let object = json!({
-            "type": "BuildingInstallation",
-            "parents": [name],
-            "attributes": attributes,
-            "geometry": [{ "type": "MultiSurface", "lod": "2.2", "boundaries": faces }],
-        });
-        (format!("{name}-obstruction-{k}"), object)
-    };
-    let all: Vec<_> = all.enumerate().map(installation).collect();
-    if !all.is_empty() {
-        object["children"] = all.iter().map(|(name, _)| name.as_str()).collect();
-    }
-    all.into_iter()
 }
 
 /// Adds a number and its standard deviation.
@@ -356,7 +296,11 @@ fn add_measures(surface: &mut Value, measured: &Measured, id: FacetId) {
 }
 
 /// What a face is; roof surfaces carry the facet's id, slope and evidence.
-fn semantic_surface(model: &RoofModel, measured: &Measured, surface: Surface) -> Value {
+fn semantic_surface(
+    scene: &Scene,
+    (model, measured): (&RoofModel, &Measured),
+    surface: Surface,
+) -> Value {
     match surface {
         Surface::Wall => json!({ "type": "WallSurface" }),
         Surface::Ceiling => json!({ "type": "OuterCeilingSurface" }),
@@ -383,9 +327,34 @@ fn semantic_surface(model: &RoofModel, measured: &Measured, surface: Surface) ->
                 add_sides(&mut surface, facet, known);
             }
             add_measures(&mut surface, measured, id);
+            if !facet.obstructions.is_empty() {
+                surface[OBSTRUCTIONS] = (facet.obstructions.iter())
+                    .map(|obstruction| obstruction_of(scene, obstruction))
+                    .collect();
+            }
             surface
         }
     }
+}
+
+/// What stands on a facet: its outline in plan, in the world frame, and its height.
+fn obstruction_of(scene: &Scene, obstruction: &Obstruction) -> Value {
+    let outline = (obstruction.outline.iter()).map(|p| [0, 1].map(|k| in_plan(scene, p, k)));
+    let mut value = json!({
+        "outline": outline.collect::<Value>(),
+        "probability": rounded(obstruction.probability, 4),
+    });
+    let height = Estimate {
+        value: obstruction.height_m,
+        sigma: obstruction.height_sigma_m,
+    };
+    add(&mut value, "height", height);
+    value
+}
+
+/// A coordinate in the world frame as the file has it.
+pub(super) fn in_plan(scene: &Scene, p: &Point2<f64>, axis: usize) -> f64 {
+    rounded(p[axis] + scene.origin[axis], 4)
 }
 
 /// Adds what is known of the sides, a list for each ring; a side begins at the corner of its index.

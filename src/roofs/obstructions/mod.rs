@@ -35,6 +35,8 @@ use crate::roofs::model::{Facet, Obstruction, Occluders, RoofModel};
 pub(crate) const FINEST_SAMPLE_M: f64 = 0.06;
 /// Cells of a surface: those of the largest halls are wider, and none takes more than 80 MB.
 const SURFACE_CELLS: f64 = 4e5;
+/// Three to one, as for lines of the finished model: what usable areas leave out should be there.
+const ACCEPTED_NATS: f64 = 1.1;
 /// What lies so near to an obstruction may be its border, metres.
 const BORDER_M: f64 = 0.15;
 /// How far around a block the surface is looked at, metres.
@@ -129,7 +131,7 @@ fn weighed(scene: &Scene, facet: &Facet, seen: &SeenSurface, block: &Block, nats
             outline: block.outline().map(|p| Point3::new(p.x, p.y, top)).to_vec(),
             holes: Vec::new(),
             plane: Plane::level(top),
-            accepted: evidence.accepts(0.0),
+            accepted: evidence.accepts(ACCEPTED_NATS),
             evidence,
             windows: WindowCounts::default(),
         },

@@ -5,11 +5,10 @@ use serde_json::{Value, json};
 
 use super::super::format::rounded;
 use crate::base::geometry::mean_point;
-use crate::base::ids::FacetId;
 use crate::base::math::{atan2, cos};
 use crate::orienting::scene::Survey;
 use crate::results::roof_report::{BuildingReport, Estimate, FacetReport, SetbackRule};
-use crate::roofs::model::{Building, Obstruction, RoofModel, Solid, SolidFace, Surface};
+use crate::roofs::model::{Building, RoofModel, Solid, SolidFace, Surface};
 
 /// The yield of one kilowatt with the losses that PVGIS proposes, on a building; its documentation
 /// is the "API non-interactive service" of the Joint Research Centre.
@@ -86,19 +85,6 @@ impl ReportedModel {
             solid,
         });
         true
-    }
-
-    /// Adds what stands on the roof of a building: on the facet that its middle lies deepest in.
-    pub(super) fn add_obstruction(&mut self, building: usize, obstruction: Obstruction) {
-        let middle = mean_point(&obstruction.outline);
-        let depth = |f: &FacetId| self.model.facets[f.index()].plan().depth(&middle);
-        let facets = self.model.buildings[building].facets.iter();
-        let below = facets.max_by(|a, b| depth(a).total_cmp(&depth(b))).copied();
-        if let Some(facet) = below {
-            self.model.facets[facet.index()]
-                .obstructions
-                .push(obstruction);
-        }
     }
 
     /// The middle of a facet's corners, on its plane.

@@ -3,7 +3,7 @@
 
 use nalgebra::{Point2, Point3, center};
 
-use super::super::cityjson::{whole_corners, written_frame};
+use super::super::cityjson::{in_plan, whole_corners, written_frame};
 use super::super::format::rounded;
 use super::super::measured::Measured;
 use super::read::plane_of;
@@ -52,7 +52,7 @@ impl ReportedModel {
                     .map(|ring| ring.iter().map(corner).collect())
                     .collect();
                 let surface = match face.surface {
-                    Surface::Roof(id) => written.add_facet((model, measured), id, &rings),
+                    Surface::Roof(id) => written.add_facet(scene, (model, measured), id, &rings),
                     Surface::Ground => Surface::Ground,
                     Surface::Wall | Surface::Ceiling => Surface::Wall,
                 };
@@ -61,10 +61,6 @@ impl ReportedModel {
             let faces = faces.collect();
             let ground_m = rounded(building.ground_z + scene.origin.z, 4);
             if written.add_building(faces, Some(ground_m - scene.origin.z)) {
-                let last = written.model.buildings.len() - 1;
-                let facets = building.facets.iter().map(|f| &model.facets[f.index()]);
-                let obstructions = facets.flat_map(|facet| &facet.obstructions);
-                obstructions.for_each(|o| written.add_obstruction(last, written_obstruction(o)));
                 written.names.push(format!("building-{i}"));
                 written.walls.push(
                     walls
@@ -79,6 +75,7 @@ impl ReportedModel {
     /// Adds a facet over these rings; a wall where it does not look up.
     fn add_facet(
         &mut self,
+        scene: &Scene,
         (model, measured): (&RoofModel, &Measured),
         id: FacetId,
         rings: &Rings,
@@ -100,7 +97,9 @@ impl ReportedModel {
             lines: Vec::new(),
             half_planes: Vec::new(),
             proposals: Vec::new(),
-            obstructions: Vec::new(),
+            obstructions: (facet.obstructions.iter())
+                .map(|obstruction| written_obstruction(scene, obstruction))
+                .collect(),
         });
         self.photographs
             .push(measured.photographs[id.index()].clone());
@@ -108,10 +107,14 @@ impl ReportedModel {
     }
 }
 
-fn written_obstruction(obstruction: &Obstruction) -> Obstruction {
-    let steps = |c: f64| (c / WRITTEN_STEP_M).round() * WRITTEN_STEP_M;
+/// As the file states it, and as it is read.
+fn written_obstruction(scene: &Scene, obstruction: &Obstruction) -> Obstruction {
+    let coordinate = |p: &Point2<f64>, k| in_plan(scene, p, k) - scene.origin[k];
+    let outline = obstruction.outline.iter();
     Obstruction {
-        outline: (obstruction.outline.iter()).map(|p| p.map(steps)).collect(),
+        outline: outline
+            .map(|p| [0, 1].map(|k| coordinate(p, k)).into())
+            .collect(),
         height_m: rounded(obstruction.height_m, 4),
         height_sigma_m: obstruction.height_sigma_m.map(|sigma| rounded(sigma, 4)),
         probability: rounded(obstruction.probability, 4),
