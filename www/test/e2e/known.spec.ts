@@ -7,6 +7,7 @@ import {
   runButton,
   save,
   showProject,
+  tabOf,
   type Upload,
   upload,
   waitForStage,

@@ -39,7 +39,7 @@ import {
   stages,
   updateStage,
 } from "../state/stages";
-import { beginLeading, leadTo, select, showPlane, showTab } from "../state/viewState";
+import { beginLeading, leadTo, select, showPlane, showTab, tab } from "../state/viewState";
 import { chooseWorkers, workers } from "../state/workers";
 import type { Turn } from "./actionQueue";
 import { workerNotice } from "./failureNotice";
@@ -239,7 +239,7 @@ async function runStage(name: StageName, position: number, taken: ParamTree): Pr
       select(null);
       // A preliminary model is looked at until its own facets take its place.
       const shown = shownTabOf(name, method.value);
-      if (shown !== null && preliminaryFacets.value === null) {
+      if (shown !== null && (preliminaryFacets.value === null || tab.value !== "model")) {
         leadTo(shown);
       }
       updateStage(name, { ...summary, status: "done", fraction: 1, seconds });

@@ -60,18 +60,24 @@ export function showTab(name: Tab): void {
   }
 }
 
-/** Where a run has led; who is elsewhere has gone there, and stays. */
-let led: Tab = "images";
+/** Whether somebody has opened a tab since the run began, which stays. */
+let isChosen = false;
 
-export function beginLeading(): void {
-  led = tab.value;
+/** Turns to a tab that somebody opens. */
+export function openTab(name: Tab): void {
+  isChosen = true;
+  showTab(name);
 }
 
-/** Turns to what a run has found, where nobody has turned to something else since. */
+/** A run begins, and leads from tab to tab. */
+export function beginLeading(): void {
+  isChosen = false;
+}
+
+/** Turns to what a run has found, unless somebody has opened a tab meanwhile. */
 export function leadTo(name: Tab): void {
-  if (tab.value === led) {
+  if (!isChosen) {
     showTab(name);
-    led = name;
   }
 }
 

@@ -51,6 +51,14 @@ export async function buildModel(
     }
   });
   const textured = new Map(meshes.map((mesh) => [mesh, mesh.material as Material]));
+  // What stands on roofs has no photograph: a dark one's material needs no program of its own.
+  for (const mesh of meshes.filter((mesh) => extra(mesh, "surface") === "obstruction")) {
+    const dark = (textured.get(meshes[0] as Mesh) as MeshBasicMaterial).clone();
+    dark.color.multiplyScalar(0.4);
+    textured.get(mesh)?.dispose();
+    textured.set(mesh, dark);
+    mesh.material = dark;
+  }
   const own = [...new Set(textured.values())] as MeshBasicMaterial[];
   const colours = new Map(own.map((material) => [material, material.color.clone()]));
   await inShortTasks(meshes, addTint);

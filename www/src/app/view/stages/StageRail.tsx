@@ -14,7 +14,7 @@ import { canRun, runAll, runTo, setMethod } from "../../session/stageRuns";
 import { phase } from "../../state/activity";
 import { method } from "../../state/parameters";
 import { type StageState, type StageStatus, stages } from "../../state/stages";
-import { showTab, tab } from "../../state/viewState";
+import { openTab, tab } from "../../state/viewState";
 import { chooseWorkers, chosenWorkers, usefulWorkers } from "../../state/workers";
 
 const STATUS_WORDS: Record<StageStatus, string> = {
@@ -93,7 +93,7 @@ function Stages() {
     if (step !== undefined) {
       event.preventDefault();
       const next = names[(names.indexOf(tab.value) + step + names.length) % names.length] ?? tab.value;
-      showTab(next);
+      openTab(next);
       list.current?.querySelector<HTMLElement>(`#tab-${next}`)?.focus();
     }
   };
@@ -160,7 +160,7 @@ function StageRow(of: { tab: Tab | null; stage: StageState | null; line: number 
       aria-selected={tab.value === name}
       aria-controls="stage-view"
       tabIndex={tab.value === name ? 0 : -1}
-      onClick={() => showTab(name)}
+      onClick={() => openTab(name)}
     >
       {inside}
     </button>
