@@ -10,7 +10,7 @@
 //! A block hides of a facet what lies behind it in each view: its base, and the strip over which
 //! its top leans. Of all places, from the likeliest on, that say more than the best of as many says
 //! by chance, and that are not yet explained, the block there is fitted, and what it hides is
-//! explained. A fitted table ([`EvidenceModel::of_obstructions`]) weighs what was measured of a
+//! explained. A fitted table (`EvidenceModel::of_obstructions`) weighs what was measured of a
 //! block: something that hides a roof may also be a tree, a wire, or a neighbour.
 
 mod block;
