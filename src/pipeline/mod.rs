@@ -113,6 +113,8 @@ impl Results {
             lines: (matched.zip(self.evidence_of_matches()).map(judged)).collect(),
             model_lines: all.iter().zip(in_model).map(judged).collect(),
             facets: facets.map_or_else(Vec::new, |found| found.trace.facets.judged.clone()),
+            obstructions: (self.refinement.as_ref())
+                .map_or_else(Vec::new, |found| found.trace.obstructions.clone()),
             rectangles: (self.rectangles.as_ref())
                 .map_or_else(Vec::new, |found| found.trace.judged()),
             surfaces: (self.dense.as_ref())

@@ -32,6 +32,7 @@ pub(crate) fn facet(ring: &[Point3<f64>]) -> Facet {
         lines: Vec::new(),
         half_planes: Vec::new(),
         proposals: Vec::new(),
+        obstructions: Vec::new(),
     }
 }
 

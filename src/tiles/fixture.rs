@@ -24,6 +24,7 @@ pub(crate) fn house([x, y]: [f64; 2]) -> RoofModel {
         lines: Vec::new(),
         half_planes: Vec::new(),
         proposals: Vec::new(),
+        obstructions: Vec::new(),
     };
     close_buildings(&[facet], |_| 0.0).0
 }

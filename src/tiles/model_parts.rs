@@ -81,6 +81,13 @@ pub(super) fn moved(mut model: RoofModel, by: &Vector3<f64>) -> RoofModel {
             .chain(facet.holes.iter_mut().flatten())
             .for_each(|p| *p -= by);
         facet.plane = moved_plane(&facet.plane, by);
+        let standing = facet.obstructions.iter_mut();
+        standing.for_each(|o| o.outline.iter_mut().for_each(|p| *p -= by.xy()));
+        if let Some(known) = &mut facet.uncertainty {
+            known.corners.iter_mut().for_each(|corner| corner.at -= by);
+            let ends = known.sides.iter_mut().flat_map(|side| &mut side.ends);
+            ends.for_each(|p| *p -= by.xy());
+        }
     }
     for building in &mut model.buildings {
         building.solid.vertices.iter_mut().for_each(|p| *p -= by);
@@ -93,5 +100,50 @@ pub(super) fn moved_plane(plane: &Plane, by: &Vector3<f64>) -> Plane {
     Plane {
         normal: plane.normal,
         d: plane.d + plane.normal.dot(by),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Point3, center};
+
+    use super::*;
+    use crate::roofs::model::{
+        CornerUncertainty, FacetUncertainty, Obstruction, SideSupport, SideUncertainty,
+    };
+    use crate::tiles::fixture::house;
+
+    #[test]
+    fn what_is_known_of_a_facet_and_stands_on_it_moves_with_it() {
+        let mut model = house([3.0, 4.0]);
+        let facet = &mut model.facets[0];
+        let corner = |&at: &Point3<f64>| CornerUncertainty {
+            at,
+            sigma_m: Vector3::repeat(0.1),
+        };
+        let side = |ends| SideUncertainty {
+            ends,
+            sigma_m: 0.2,
+            support: SideSupport::Edges,
+        };
+        facet.uncertainty = Some(FacetUncertainty {
+            height_m: 0.1,
+            slope_deg: 1.0,
+            corners: facet.outer.iter().map(corner).collect(),
+            sides: facet.plan().sides().map(side).collect(),
+        });
+        facet.obstructions.push(Obstruction {
+            outline: facet.outer.iter().map(|p| p.xy()).collect(),
+            height_m: 1.0,
+            height_sigma_m: None,
+            probability: 1.0,
+        });
+        let model = moved(model, &Vector3::new(100.0, -50.0, 7.0));
+        let facet = &model.facets[0];
+        let known = facet.uncertainty.as_ref().unwrap();
+        for (corner, [p, q]) in facet.outer.iter().zip(facet.plan().sides()) {
+            assert!(known.at(corner).is_some() && known.side(&center(&p, &q)).is_some());
+            assert!(facet.obstructions[0].outline.contains(&p));
+        }
     }
 }

@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 use crate::common::{names_in, synthetic_files, zipped};
 
 /// What a run writes.
-const OUTPUTS: [&str; 24] = [
+const OUTPUTS: [&str; 25] = [
     "buildings.csv",
     "edges.csv",
     "edges.geojson",
@@ -28,6 +28,7 @@ const OUTPUTS: [&str; 24] = [
     "model.obj",
     "model.ply",
     "model_atlas.jpg",
+    "obstructions.geojson",
     "report.json",
     "roof_report.html",
     "roofs.json",

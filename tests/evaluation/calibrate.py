@@ -13,7 +13,8 @@ score.py, by whose definitions a candidate is true. Printed are area under the R
 present tables, which may know these scenes, and of the new ones, cross-validated by scene. Written
 are src/base/evidence/*.json and docs/calibration-*.svg (--dry: nothing; --keep takes runs that are there
 already). Other lines make other facets: build and run again until the tables stay. What
-stands on roofs and how their outlines turn is fitted without a run (shared/clutter.py, shared/corners.py). Needs numpy, scipy,
+stands on roofs, what hides them and how their outlines turn is fitted without a run (shared/clutter.py, shared/hiding.py,
+shared/corners.py). Needs numpy, scipy,
 Pillow and shapely.
 """
 import argparse
@@ -27,7 +28,7 @@ import sys
 import numpy as np
 
 import roof_sigmas
-from shared import clutter, corners, logistic
+from shared import clutter, corners, hiding, logistic
 from shared.on_scenes import ROOT, loaded, move_to_truth
 from shared.plots import HEIGHT, LEFT, TOP, WIDTH, document
 
@@ -61,6 +62,8 @@ SIGNS = {
     },
     'buildings': {'height_m': 1, 'roughness_px': -1, 'excess_green': 0, 'correlation': 0, 'cos_slope': 0, 'ln_area_m2': 0},
     'sites': {'ln_1_plus_surface_m2': 1, 'ln_1_plus_lines_m': 1, 'ln_width_m': 1},
+    'obstructions': {'ln_nats': 1, 'nats_a_cell': 0, 'nats_a_cell_around': 0,
+                     'height_m': 0, 'ln_area_m2': 0, 'width_m': 0, 'inside_m': 0, 'excess_green': -1},
     'vegetation': {'height_m': 0, 'roughness_px': 1, 'excess_green': 1, 'correlation': 0, 'cos_slope': 0, 'ln_area_m2': 0},
     'model_lines': {'nats_before': 1, 'is_border': 0, 'is_intersection': 0, 'share_on_surfaces': 1, 'hidden_views': -1,
                     'facets_on_it': 1},
@@ -71,6 +74,9 @@ TRUE_SHARE, WINDOWS_SHARE, FEWEST_WINDOWS = 0.5, 0.9, 20
 SITE_SHARE = 0.15
 # Of a rectangle more: of those of one plane the one with the right ends is wanted.
 RECTANGLE_SHARE = 0.75
+# A block stands on a roof if the surface model rises above that by so much, metres, over such shares of it: curbs, and what is
+# higher but hardly hit.
+RISES = ((0.05, 0.3), (0.2, 0.15))
 # How near the surface model a patch lies on it, and how high what stands on it rises, metres.
 SURFACE_M = 0.5
 # Smaller facets are not judged, square metres in plan.
@@ -100,6 +106,7 @@ def main():
         uncertainty_self_test()
         clutter.self_test()
         corners.self_test()
+        hiding.self_test()
         return logistic.self_test()
     scenes, scorer = scenes_of(args), args.more.parent / 'score' / 'score.py'
     if not scorer.is_file() or len(scenes) < 2:
@@ -107,7 +114,7 @@ def main():
               f'{scorer} {"is there" if scorer.is_file() else "is missing"}; two scenes are needed')
         return 0
     truth = loaded(scorer)
-    lines, facets, model_lines, buildings, vegetation, rectangles, sites = [], [], [], [], [], [], []
+    lines, facets, model_lines, buildings, vegetation, rectangles, sites, obstructions = [], [], [], [], [], [], [], []
     for scene in scenes:
         found = {how: run(args, scene, how) for how in RUN}
         if all(found.values()):
@@ -120,12 +127,13 @@ def main():
             buildings += [{**s, 'values': s['building'], 'true': s['class'] == 'building'} for s in surfaces]
             vegetation += [{**s, 'values': s['vegetation'], 'true': s['class'] == 'vegetation'}
                            for s in surfaces if s['class'] != 'building']
+            obstructions += obstructions_of(truth, scene, found['strict']['obstructions'])
             # The truth of the real ones has some buildings of many.
             sites += [] if kind_of(scene.name) == 'real' else sites_of(scene, looked_at(args, scene))
             print(f'{scene.name}: {len(lines)} lines, {len(facets)} facets so far', flush=True)
     for kind, candidates in (('lines', lines), ('facets', facets), ('model_lines', model_lines),
                              ('rectangles', rectangles), ('buildings', buildings), ('vegetation', vegetation),
-                             ('sites', sites)):
+                             ('sites', sites), ('obstructions', obstructions)):
         calibrate(args, kind, candidates)
     calibrate_windows(args, facets)
     calibrate_uncertainty(args, truth, scenes)
@@ -254,6 +262,29 @@ def overlap_of(truth, face, place, normal, offset):
     angle = math.degrees(math.acos(np.clip(face.n @ normal, -1, 1)))
     is_on = angle < truth.MAX_ANGLE and math.sqrt(squares / max(area, 1e-9)) < truth.MAX_RMS_Z
     return shared.area if is_on else 0.0
+
+
+def obstructions_of(truth, scene, found):
+    """The blocks on true roofs of a scene with a surface model; true ones rise above the roof there."""
+    from shapely.geometry import Point, Polygon
+    surface = truth.load_dsm(str(scene), 'dsm')
+    if surface is None or not found:
+        return []
+    faces, _ = truth.read_truth(str(scene))
+    blocks = []
+    for block in found:
+        outline = np.array(block['outline'])
+        place = Polygon((outline + to_truth(scene, outline))[:, :2]).buffer(0.1, join_style=2)
+        low_x, low_y, high_x, high_y = place.bounds
+        at = np.stack(np.meshgrid(np.arange(low_x, high_x, 0.1), np.arange(low_y, high_y, 0.1)), -1).reshape(-1, 2)
+        roof = np.array([max((np.dot(face.abc, (x, y, 1)) for face in faces if face.poly.intersects(Point(x, y))), default=np.nan)
+                         for x, y in at])
+        heights = heights_of(surface, np.column_stack([at, roof])) - roof
+        heights = heights[np.isfinite(heights)]
+        if len(heights) > 0.5 * len(at):
+            blocks.append({'scene': scene.name, 'values': values_of(block),
+                           'true': any((heights > by).mean() > share for by, share in RISES)})
+    return blocks
 
 
 def sites_of(scene, found):
@@ -563,10 +594,10 @@ def inflation(error, adjusted, pixel):
 
 
 def calibrate_roofs(args, scenes):
-    """Fits what stands on roofs, and how their outlines turn, to the truth of scenes and their photographs, and writes it."""
+    """Fits what stands on roofs, what hides them, and how their outlines turn, to the truth of scenes and their photographs, and writes it."""
     if not scenes:
         return
-    for kind, of in (('clutter', clutter), ('corners', corners)):
+    for kind, of in (('clutter', clutter), ('corners', corners), ('hiding', hiding)):
         path = TABLES / f'{kind}.json'
         count, table = of.table(scenes, json.loads(path.read_text()))
         table = {'source': f'{count} of {told_scenes(scene.name for scene in scenes)}', **table}

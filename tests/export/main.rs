@@ -8,6 +8,7 @@ mod city;
 mod glb;
 mod ifc;
 mod meshes;
+mod obstructions;
 mod planted;
 mod report;
 mod roofs;

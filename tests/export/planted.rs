@@ -42,6 +42,7 @@ fn facet(rings: &[&[(f64, f64)]], z0: f64, gx: f64, gy: f64) -> Facet {
         lines: Vec::new(),
         half_planes: Vec::new(),
         proposals: Vec::new(),
+        obstructions: Vec::new(),
     }
 }
 
@@ -219,6 +220,7 @@ fn planted_candidates() -> Candidates {
             evidence: evidence.clone(),
             windows: WindowCounts::default(),
         }],
+        obstructions: Vec::new(),
         rectangles: Vec::new(),
         surfaces: vec![JudgedSurface {
             patches: outline.to_vec(),

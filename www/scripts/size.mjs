@@ -10,8 +10,8 @@ import { join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 
-const MOST_WASM = 1_800_000;
-const MOST_IN_ALL = 2_130_000;
+const MOST_WASM = 1_820_000;
+const MOST_IN_ALL = 2_150_000;
 // Of the lessons, as static hosts serve them.
 const MOST_LESSONS = 80_000;
 // Of the second module alone, as the larger of two compressions.

@@ -16,6 +16,8 @@ pub struct Candidates {
     pub model_lines: Vec<JudgedLine>,
     /// Every facet that was weighed.
     pub facets: Vec<JudgedFacet>,
+    /// Every block that may stand on a roof, by its top.
+    pub obstructions: Vec<JudgedFacet>,
     /// Every plane between parallel lines that was weighed.
     pub rectangles: Vec<JudgedFacet>,
     /// Every surface of dense matching.
@@ -132,6 +134,7 @@ impl Candidates {
             lines: lines_of(&self.lines),
             model_lines: lines_of(&self.model_lines),
             facets: facets_of(&self.facets),
+            obstructions: facets_of(&self.obstructions),
             rectangles: facets_of(&self.rectangles),
             surfaces: surfaces.map(surface).collect(),
         }
@@ -184,6 +187,7 @@ mod tests {
             lines: vec![line(1.0), line(90.0)],
             model_lines: vec![line(2.0)],
             facets: vec![facet],
+            obstructions: Vec::new(),
             rectangles: Vec::new(),
             surfaces: [1.0, 90.0].map(surface).to_vec(),
         };

@@ -18,6 +18,7 @@
 
 mod clutter;
 mod corners;
+mod hiding;
 mod judged;
 mod uncertainty;
 mod walls;
@@ -25,6 +26,7 @@ mod windows;
 
 pub(crate) use clutter::ClutterTable;
 pub(crate) use corners::CornerTable;
+pub(crate) use hiding::HidingTable;
 pub use judged::{
     Candidates, JudgedFacet, JudgedLine, JudgedSurface, WindowCounts, WindowHistogram,
 };
@@ -182,6 +184,18 @@ impl EvidenceModel {
         MODEL.get_or_init(|| Self::read(include_str!("sites.json")))
     }
 
+    /// The model of what stands on roofs among what hides them.
+    pub(crate) fn of_obstructions() -> &'static Self {
+        static MODEL: OnceLock<EvidenceModel> = OnceLock::new();
+        MODEL.get_or_init(|| Self::read(include_str!("obstructions.json")))
+    }
+
+    /// The model of roofs among the facets that stand on another one.
+    pub(crate) fn of_islands() -> &'static Self {
+        static MODEL: OnceLock<EvidenceModel> = OnceLock::new();
+        MODEL.get_or_init(|| Self::read(include_str!("islands.json")))
+    }
+
     /// The name of a feature as the tables have it.
     fn feature_called(name: &str) -> Option<&'static str> {
         let known = [INSIDE_FOOTPRINT, POINT_CLOUD];
@@ -196,6 +210,7 @@ impl EvidenceModel {
             Self::of_rectangles(),
             Self::of_buildings(),
             Self::of_vegetation(),
+            Self::of_obstructions(),
         ];
         let mut features = models.into_iter().flat_map(|model| &model.features);
         features.find_map(|table| (table.name == name).then_some(&*table.name))
@@ -298,6 +313,8 @@ mod tests {
             EvidenceModel::of_model_lines(),
             EvidenceModel::of_buildings(),
             EvidenceModel::of_vegetation(),
+            EvidenceModel::of_obstructions(),
+            EvidenceModel::of_islands(),
         ];
         for model in models {
             assert!(model.source.contains("seeds"), "{}", model.source);

@@ -10,7 +10,7 @@
 //! channel         the choice between the two; linear_light undoes the camera's tone curve
 //! coverage        smaller images, each pixel the mean of what it covers
 //! noise           standard deviation of a pixel
-//! bilinear, warp  sub-pixel values, one by one or along the rows of a homography
+//! bilinear, warp  sub-pixel values, one by one or along the rows of a homography; colour likewise
 //! filter, fill    Gaussian blur; polygons into masks and gaps filled smoothly
 //! ```
 //!
@@ -18,6 +18,7 @@
 
 mod bilinear;
 mod channel;
+mod colour;
 mod coverage;
 mod files;
 pub(crate) mod fill;
@@ -31,6 +32,7 @@ mod turn;
 mod warp;
 
 pub use channel::Channel;
+pub(crate) use colour::colour_at;
 pub(crate) use coverage::{Coverage, colours_of_blocks, reduced_gray};
 pub use files::{
     Bands, Excerpt, HeaderNeeds, ImageHeader, Piece, UnreadImageFormat, decoding_bytes,

@@ -33,11 +33,13 @@ impl StageDefinition for Refinement {
 
     fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {
         let (model, trace) = (&found.value, &found.trace);
+        let obstructions = model.facets.iter().flat_map(|facet| &facet.obstructions);
         Findings {
             counts: vec![
                 ("facets", model.facets.len()),
                 ("buildings", model.buildings.len()),
                 ("below parapets", trace.parapets.len()),
+                ("obstructions", obstructions.count()),
                 ("contradicted lines", trace.lines.contradicted.len()),
             ],
             warnings: Vec::new(),

@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Point3;
+use nalgebra::{Point2, Point3};
 use serde_json::{Map, Value, json};
 
 use super::format::{ATLAS_FILE, rounded, to_bytes};
@@ -21,13 +21,16 @@ use crate::orienting::scene::Scene;
 use crate::results::roof_report::{Estimate, Lengths, RoofEdgeKind};
 use crate::results::texture::{FaceTexture, TexturedModel};
 use crate::roofs::model::{
-    Building, BuildingWalls, Facet, FacetUncertainty, RoofModel, SideUncertainty, Solid, Surface,
+    Building, BuildingWalls, Facet, FacetUncertainty, Obstruction, RoofModel, SideUncertainty,
+    Solid, Surface,
 };
 use crate::roofs::solids::WRITTEN_STEP_M;
 
 /// Name of the appearance theme.
 const THEME: &str = "photographs";
 
+/// The attribute of a roof surface that says what stands on it.
+pub(super) const OBSTRUCTIONS: &str = "obstructions";
 /// The attribute of a building that says what scale and level of the frame are worth, and its
 /// members.
 pub(super) const FRAME_SIGMA: &str = "frameSigma";
@@ -201,7 +204,7 @@ fn building_object(
             .map(|ring| ring.iter().map(|&v| offset + v as usize).collect())
             .collect();
         boundaries.push(rings);
-        surfaces.push(semantic_surface(model, measured, face.surface));
+        surfaces.push(semantic_surface(scene, (model, measured), face.surface));
         texture_values.push(texture_of_rings(texture, shared));
     }
     let values: Vec<usize> = (0..surfaces.len()).collect();
@@ -293,7 +296,11 @@ fn add_measures(surface: &mut Value, measured: &Measured, id: FacetId) {
 }
 
 /// What a face is; roof surfaces carry the facet's id, slope and evidence.
-fn semantic_surface(model: &RoofModel, measured: &Measured, surface: Surface) -> Value {
+fn semantic_surface(
+    scene: &Scene,
+    (model, measured): (&RoofModel, &Measured),
+    surface: Surface,
+) -> Value {
     match surface {
         Surface::Wall => json!({ "type": "WallSurface" }),
         Surface::Ceiling => json!({ "type": "OuterCeilingSurface" }),
@@ -320,9 +327,34 @@ fn semantic_surface(model: &RoofModel, measured: &Measured, surface: Surface) ->
                 add_sides(&mut surface, facet, known);
             }
             add_measures(&mut surface, measured, id);
+            if !facet.obstructions.is_empty() {
+                surface[OBSTRUCTIONS] = (facet.obstructions.iter())
+                    .map(|obstruction| obstruction_of(scene, obstruction))
+                    .collect();
+            }
             surface
         }
     }
+}
+
+/// What stands on a facet: its outline in plan, in the world frame, and its height.
+fn obstruction_of(scene: &Scene, obstruction: &Obstruction) -> Value {
+    let outline = (obstruction.outline.iter()).map(|p| [0, 1].map(|k| in_plan(scene, p, k)));
+    let mut value = json!({
+        "outline": outline.collect::<Value>(),
+        "probability": rounded(obstruction.probability, 4),
+    });
+    let height = Estimate {
+        value: obstruction.height_m,
+        sigma: obstruction.height_sigma_m,
+    };
+    add(&mut value, "height", height);
+    value
+}
+
+/// A coordinate in the world frame as the file has it.
+pub(super) fn in_plan(scene: &Scene, p: &Point2<f64>, axis: usize) -> f64 {
+    rounded(p[axis] + scene.origin[axis], 4)
 }
 
 /// Adds what is known of the sides, a list for each ring; a side begins at the corner of its index.

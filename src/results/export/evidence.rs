@@ -7,9 +7,10 @@ use super::format::{rounded, to_bytes, world};
 use crate::base::evidence::{Candidates, Evidence, JudgedFacet, JudgedLine, WindowHistogram};
 use crate::orienting::scene::Scene;
 
-/// `evidence.json`: every matched line, every line in the finished model, every facet and every
-/// plane between parallel lines that was weighed, every surface of dense matching, and the classes
-/// in which the windows of the facets are counted. World frame of the input.
+/// `evidence.json`: every matched line, every line in the finished model, every facet, every block
+/// on a roof and every plane between parallel lines that was weighed, every surface of dense
+/// matching, and the classes in which the windows of the facets are counted. World frame of the
+/// input.
 pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
     let line = |line: &JudgedLine| {
         json!({
@@ -37,6 +38,7 @@ pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
         "lines": lines_of(&candidates.lines),
         "model_lines": lines_of(&candidates.model_lines),
         "facets": facets_of(&candidates.facets),
+        "obstructions": facets_of(&candidates.obstructions),
         "rectangles": facets_of(&candidates.rectangles),
         "surfaces": surfaces.collect::<Vec<_>>(),
         "window_classes": {

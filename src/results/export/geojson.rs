@@ -1,4 +1,4 @@
-//! Maps as GeoJSON: footprints, facets and edges of the roofs.
+//! Maps as GeoJSON: footprints, facets and edges of the roofs, and what stands on them.
 //!
 //! RFC 7946 wants longitude and latitude: positions are in these where the frame's place on the
 //! Earth is known, else in the input's own coordinates, whose reference system is named in the
@@ -123,6 +123,36 @@ pub(super) fn facets(scene: &Scene, model: &RoofModel, measured: &Measured) -> V
             },
             "properties": properties.0,
         }));
+    }
+    collection(scene, features)
+}
+
+/// What stands on the roofs in plan as GeoJSON polygons, with heights.
+pub(super) fn obstructions(scene: &Scene, model: &RoofModel) -> Vec<u8> {
+    let mut features = Vec::new();
+    for (id, facet) in model.facets.iter().enumerate() {
+        for obstruction in &facet.obstructions {
+            let height = Estimate {
+                value: obstruction.height_m,
+                sigma: obstruction.height_sigma_m,
+            };
+            let mut properties = Properties::new(&[
+                ("building", json!(facet.building)),
+                ("facet", json!(id)),
+                ("probability", json!(rounded(obstruction.probability, 4))),
+            ]);
+            properties.add("height_m", Some(height));
+            let ring = obstruction
+                .outline
+                .iter()
+                .chain(obstruction.outline.first());
+            let ring = ring.map(|p| position(scene, &facet.plane.lift(p.x, p.y)));
+            features.push(json!({
+                "type": "Feature",
+                "geometry": { "type": "Polygon", "coordinates": [ring.collect::<Vec<_>>()] },
+                "properties": properties.0,
+            }));
+        }
     }
     collection(scene, features)
 }

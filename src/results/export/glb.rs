@@ -22,8 +22,10 @@ use gltf_json::mesh::{Mode, Semantic};
 use gltf_json::texture::{MagFilter, MinFilter, WrappingMode};
 use gltf_json::validation::{Checked, USize64};
 use gltf_json::{self as gltf, Index};
+use nalgebra::{Point3, Vector3};
 use serde_json::{Value, json};
 
+use crate::base::geometry::vector_area;
 use crate::orienting::scene::Scene;
 use crate::results::texture::{FaceTexture, TexturedModel};
 use crate::roofs::model::{Building, RoofModel, SolidFace, Surface, triangulate};
@@ -52,9 +54,17 @@ pub fn glb_of(
         file.add_material(atlas);
     }
     for (i, textures) in buildings.zip(faces) {
-        nodes.push(file.add_building(i, &model.buildings[i], textures));
+        nodes.push(file.add_building(i, model, textures));
     }
     file.finish(nodes, scene)
+}
+
+/// A grey that stands out from tiles and gravel, linear.
+const OBSTRUCTION_COLOUR: [f32; 4] = [0.25, 0.27, 0.3, 1.0];
+
+/// Z up as everywhere here, Y up as the format has it.
+fn y_up(v: &Vector3<f64>) -> Vec3 {
+    DVec3::new(v.x, v.z, -v.y).as_vec3()
 }
 
 /// A glTF file in the making.
@@ -81,7 +91,6 @@ impl MeshBuffers {
         let Some(normal) = area.try_normalize(1e-12) else {
             return;
         };
-        let y_up = |v: &nalgebra::Vector3<f64>| DVec3::new(v.x, v.z, -v.y).as_vec3();
         for (&v, uv) in face.rings.iter().flatten().zip(texture.uv.iter().flatten()) {
             self.positions
                 .push(y_up(&solid.vertices[v as usize].coords));
@@ -90,6 +99,21 @@ impl MeshBuffers {
         }
         self.indices
             .extend(triangulate(solid, face).iter().flatten().map(|i| first + i));
+    }
+}
+
+impl MeshBuffers {
+    /// A convex face.
+    fn add_untextured(&mut self, ring: &[Point3<f64>]) {
+        let Some(normal) = vector_area(ring.iter().copied()).try_normalize(1e-12) else {
+            return;
+        };
+        let first = self.positions.len() as u32;
+        self.positions.extend(ring.iter().map(|p| y_up(&p.coords)));
+        self.normals.extend(ring.iter().map(|_| y_up(&normal)));
+        self.uv.extend(ring.iter().map(|_| [0.0; 2]));
+        let fan = (2..ring.len() as u32).flat_map(|k| [0, k - 1, k]);
+        self.indices.extend(fan.map(|k| first + k));
     }
 }
 
@@ -143,22 +167,46 @@ impl GlbFile {
         self.root.extensions_used.push("KHR_materials_unlit".into());
     }
 
-    /// The node of a building, with a child for each facet, one for the walls and one for the
-    /// ground.
+    /// The material of what stands on roofs, which is added with the first of it.
+    fn plain_material(&mut self) -> Index<gltf::Material> {
+        if self.root.materials.len() < 2 {
+            let surface = gltf::material::PbrMetallicRoughness {
+                base_color_factor: gltf::material::PbrBaseColorFactor(OBSTRUCTION_COLOUR),
+                metallic_factor: gltf::material::StrengthFactor(0.0),
+                ..Default::default()
+            };
+            self.root.push(gltf::Material {
+                name: Some("obstructions".into()),
+                pbr_metallic_roughness: surface,
+                ..Default::default()
+            });
+        }
+        Index::new(1)
+    }
+
+    /// The node of a building, with a child for each facet, one for the walls, one for the ground
+    /// and one for what stands on the roof.
     fn add_building(
         &mut self,
         id: usize,
-        building: &Building,
+        model: &RoofModel,
         textures: &[FaceTexture],
     ) -> Index<gltf::Node> {
+        let building = &model.buildings[id];
         let faces = || building.solid.faces.iter().zip(textures);
         let mut children = Vec::new();
+        let photographs = Index::new(0);
         for (face, texture) in faces() {
             if let Surface::Roof(facet) = face.surface {
                 let mut triangles = MeshBuffers::default();
                 triangles.add(building, face, texture);
                 let extras = json!({ "building": id, "facet": facet, "surface": "roof" });
-                children.extend(self.add_mesh(&format!("facet {}", facet.0), &extras, triangles));
+                children.extend(self.add_mesh(
+                    &format!("facet {}", facet.0),
+                    &extras,
+                    triangles,
+                    photographs,
+                ));
             }
         }
         for (surface, name) in [(Surface::Wall, "wall"), (Surface::Ground, "ground")] {
@@ -167,7 +215,17 @@ impl GlbFile {
                 triangles.add(building, face, texture);
             }
             let extras = json!({ "building": id, "surface": name });
-            children.extend(self.add_mesh(name, &extras, triangles));
+            children.extend(self.add_mesh(name, &extras, triangles, photographs));
+        }
+        let mut triangles = MeshBuffers::default();
+        for facet in building.facets.iter().map(|f| &model.facets[f.index()]) {
+            let faces = facet.obstructions.iter().flat_map(|o| facet.faces_of(o));
+            faces.for_each(|ring| triangles.add_untextured(&ring));
+        }
+        if !triangles.indices.is_empty() {
+            let material = self.plain_material();
+            let extras = json!({ "building": id, "surface": "obstruction" });
+            children.extend(self.add_mesh("obstructions", &extras, triangles, material));
         }
         self.root.push(gltf::Node {
             name: Some(format!("building {id}")),
@@ -184,6 +242,7 @@ impl GlbFile {
         name: &str,
         extras: &Value,
         triangles: MeshBuffers,
+        material: Index<gltf::Material>,
     ) -> Option<Index<gltf::Node>> {
         if triangles.indices.is_empty() {
             return None;
@@ -214,7 +273,7 @@ impl GlbFile {
             primitives: vec![gltf::mesh::Primitive {
                 attributes: attributes.map(|(s, a)| (Checked::Valid(s), a)).into(),
                 indices: Some(index),
-                material: Some(Index::new(0)),
+                material: Some(material),
                 mode: Checked::Valid(Mode::Triangles),
                 targets: None,
                 extensions: None,

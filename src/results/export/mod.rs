@@ -13,6 +13,7 @@
 //! | `model.dxf` | 3DFACE and LINE for drawing programs |
 //! | `footprints.geojson` | outlines on the ground, with heights |
 //! | `facets.geojson`, `edges.geojson` | the roofs in plan, with areas, slopes, lengths |
+//! | `obstructions.geojson` | what stands on them |
 //! | `roof_report.html` | the roofs in numbers and pictures, a page that prints |
 //! | `buildings.csv`, `facets.csv`, `edges.csv` | the same numbers as tables |
 //! | `roofs.json` | the same for programs, with polygons |
@@ -115,6 +116,7 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
         ("footprints.geojson", geojson::footprints(scene, model)),
         ("facets.geojson", geojson::facets(scene, model, &measured)),
         ("edges.geojson", geojson::edges(scene, &measured)),
+        ("obstructions.geojson", geojson::obstructions(scene, model)),
         ("lines.csv", lines_csv(scene, lines)),
         ("lines.json", lines_json(scene, lines)),
         ("segments.json", segments_json(scene, segments)),

@@ -17,8 +17,14 @@ pub fn dxf(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
         push_line(&mut text, format_args!("999\ncoordinates: {system}"));
     }
     text.push_str("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n");
-    // Layers with the colours red, yellow, grey and blue of the AutoCAD index.
-    let layers = [("ROOF", 1), ("WALL", 2), ("GROUND", 8), ("LINE3D", 5)];
+    // Layers with the colours red, yellow, grey, green and blue of the AutoCAD index.
+    let layers = [
+        ("ROOF", 1),
+        ("WALL", 2),
+        ("GROUND", 8),
+        ("OBSTRUCTION", 3),
+        ("LINE3D", 5),
+    ];
     text.push_str("0\nSECTION\n2\nTABLES\n0\nTABLE\n2\nLAYER\n70\n4\n");
     for (name, colour) in layers {
         push_line(
@@ -40,6 +46,15 @@ pub fn dxf(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
                 // The fourth corner of a triangle is its third again.
                 let points = [a, b, c, c].map(|i| solid.vertices[corners[i as usize] as usize]);
                 entity(&mut text, scene, "3DFACE", layer, &points);
+            }
+        }
+    }
+    for facet in &model.facets {
+        let faces = facet.obstructions.iter().flat_map(|o| facet.faces_of(o));
+        for face in faces {
+            for k in 2..face.len() {
+                let points = [face[0], face[k - 1], face[k], face[k]];
+                entity(&mut text, scene, "3DFACE", "OBSTRUCTION", &points);
             }
         }
     }

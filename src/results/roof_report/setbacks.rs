@@ -2,7 +2,7 @@
 //!
 //! A rule file is JSON: `name`, `title`, `source`, `setbacks_m` (metres on the face, by the name of
 //! the kind of edge; none where a kind is not named), `above_slope` (rise per metre up to which
-//! faces are exempt; 0 if not given).
+//! faces are exempt; 0 if not given), `obstruction_m` (around what stands on a face; 0 if not given).
 
 use std::collections::BTreeMap;
 
@@ -32,6 +32,9 @@ pub struct SetbackRule {
     /// Faces that rise by no more per metre in plan are exempt.
     #[serde(default)]
     pub above_slope: f64,
+    /// Around what stands on a face, metres in plan.
+    #[serde(default)]
+    pub obstruction_m: f64,
     /// By kind of edge, metres on the face.
     pub setbacks_m: BTreeMap<RoofEdgeKind, f64>,
 }
@@ -57,7 +60,8 @@ impl SetbackRule {
         let rule: Self = crate::base::json::read(text)
             .map_err(|problem| format!("is no rule of setbacks: {problem}"))?;
         let is_setback = |m: &f64| m.is_finite() && *m >= 0.0;
-        if !(rule.setbacks_m.values().all(is_setback) && is_setback(&rule.above_slope)) {
+        let others = [rule.above_slope, rule.obstruction_m];
+        if !rule.setbacks_m.values().chain(&others).all(is_setback) {
             return Err("is no rule of setbacks: its numbers are 0 or more".into());
         }
         Ok(rule)
@@ -65,8 +69,18 @@ impl SetbackRule {
 
     /// The setback of an edge on a face that rises by so much per metre, metres.
     pub(super) fn of(&self, kind: RoofEdgeKind, slope: f64) -> f64 {
+        let setback = self.setbacks_m.get(&kind).copied().unwrap_or(0.0);
+        self.unless_exempt(setback, slope)
+    }
+
+    /// The margin of what stands on a face that rises by so much per metre, metres.
+    pub(super) fn around_obstructions(&self, slope: f64) -> f64 {
+        self.unless_exempt(self.obstruction_m, slope)
+    }
+
+    fn unless_exempt(&self, setback: f64, slope: f64) -> f64 {
         match slope > self.above_slope || self.above_slope == 0.0 {
-            true => self.setbacks_m.get(&kind).copied().unwrap_or(0.0),
+            true => setback,
             false => 0.0,
         }
     }

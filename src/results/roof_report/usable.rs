@@ -1,4 +1,5 @@
-//! What a rule of setbacks leaves of a facet: strips along its edges are cut out of it.
+//! What a rule of setbacks leaves of a facet: strips along its edges are cut out of it, and what
+//! stands on it with a margin.
 //!
 //! ```text
 //! strip = { p + s a + t n : -d <= s <= l + d, 0 <= t <= d }         on the facet's plane
@@ -10,12 +11,12 @@
 //! so its area is as uncertain as they are. That strips are a little wider in plan on a facet that
 //! is less steep is not counted.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::edges::{RoofEdge, SHORT_PIECE_M, TURN_SINE, gradient};
 use super::setbacks::SetbackRule;
 use super::shape::{Part, Shape, Stretch};
-use crate::base::geometry::{Polygon, depth};
+use crate::base::geometry::{Polygon, convex_hull, depth, sides};
 use crate::roofs::model::Facet;
 
 /// What a rule leaves of a facet in plan, and how its area follows from the numbers of the shape.
@@ -29,8 +30,13 @@ pub(super) fn usable_part(
     let strips: Vec<Strip> = (shape.stretches(index))
         .map(|stretch| Strip::along(stretch, facet, edges, rule))
         .collect();
-    // What else is kept clear, obstructions with their margins, belongs into this list.
-    let kept_clear: Vec<Polygon> = strips.iter().filter_map(Strip::plan).collect();
+    let margin = rule.around_obstructions(gradient(facet).norm());
+    let obstructions = facet
+        .obstructions
+        .iter()
+        .map(|o| widened(&o.outline, margin));
+    let kept_clear = strips.iter().filter_map(Strip::plan).chain(obstructions);
+    let kept_clear: Vec<Polygon> = kept_clear.collect();
     let whole = facet.plan();
     let left = (kept_clear.iter()).fold(whole, |left, clear| left.without(clear));
     let borders = left.sides().filter_map(|ends| {
@@ -44,6 +50,22 @@ pub(super) fn usable_part(
         borders: borders.collect(),
     };
     (left, part)
+}
+
+/// An outline with a margin around it: of a rectangle all that is as near to each of its sides.
+fn widened(outline: &[Point2<f64>], margin: f64) -> Polygon {
+    let first = sides(outline).next();
+    let along = first.and_then(|[p, q]| (q - p).try_normalize(0.0));
+    let along = along.unwrap_or(Vector2::x()) * margin;
+    let across = Vector2::new(-along.y, along.x);
+    let corners = [
+        along + across,
+        along - across,
+        across - along,
+        -along - across,
+    ];
+    let around = outline.iter().flat_map(|p| corners.map(|by| p + by));
+    convex_hull(&around.collect::<Vec<_>>()).into()
 }
 
 /// What is kept clear along a stretch of the outline.

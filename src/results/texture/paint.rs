@@ -1,7 +1,7 @@
 //! The colours of one patch: from the view that shows most of it, gaps from the next ones.
 
 use glam::{DVec3, Vec3};
-use nalgebra::{Matrix2, Matrix3x2, Point2};
+use nalgebra::{Matrix2, Matrix3x2};
 use serde::Serialize;
 
 use super::occlusion::{FaceImages, WallMargins, occluded_texels};
@@ -9,7 +9,7 @@ use super::patch::{FacePlane, TexturePatch};
 use crate::base::ids::ViewId;
 use crate::orienting::scene::Scene;
 use crate::photographs::camera::Camera;
-use crate::photographs::raster::fill_gaps;
+use crate::photographs::raster::{colour_at, fill_gaps};
 
 /// Most samples along one side of a texel.
 const MAX_SUPERSAMPLING: usize = 4;
@@ -273,35 +273,12 @@ fn texel(
         let x = column + ((k % samples) as f64 + 0.5) * step;
         let y = row + ((k / samples) as f64 + 0.5) * step;
         let image = camera.project(&plane.lift(&patch.point_of(x, y)));
-        if let Some(colour) = image.and_then(|p| bilinear(rgb, &p)) {
+        if let Some(colour) = image.and_then(|p| colour_at(rgb, &p)) {
             sum += colour;
             count += 1;
         }
     }
     sum / f32::from(count.max(1))
-}
-
-/// Bilinear colour at an image position; `None` outside the centres of the border pixels.
-fn bilinear(rgb: &image::RgbImage, p: &Point2<f64>) -> Option<Vec3> {
-    let (x, y) = (p.x - 0.5, p.y - 0.5);
-    let (w, h) = (rgb.width() as usize, rgb.height() as usize);
-    if !(x >= 0.0 && y >= 0.0 && x <= (w - 1) as f64 && y <= (h - 1) as f64) {
-        return None;
-    }
-    let (column, row) = (
-        (x as usize).min(w.max(2) - 2),
-        (y as usize).min(h.max(2) - 2),
-    );
-    let (fx, fy) = ((x - column as f64) as f32, (y - row as f64) as f32);
-    let (right, below) = ((column + 1).min(w - 1), (row + 1).min(h - 1));
-    let raw = rgb.as_raw();
-    let at = |x: usize, y: usize| {
-        let first = (y * w + x) * 3;
-        Vec3::from_array([0, 1, 2].map(|c| f32::from(raw[first + c])))
-    };
-    let top = at(column, row) * (1.0 - fx) + at(right, row) * fx;
-    let bottom = at(column, below) * (1.0 - fx) + at(right, below) * fx;
-    Some(top * (1.0 - fy) + bottom * fy)
 }
 
 #[cfg(test)]

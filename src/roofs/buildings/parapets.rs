@@ -17,13 +17,12 @@ use crate::orienting::scene::Scene;
 use crate::planes::photoconsistency::{MAX_VIEWS, PlanGrid, WINDOW, consistency_map_behind};
 use crate::roofs::facets::{CloudEvidence, PartVisibility, largest_slope, windows_inside};
 use crate::roofs::model::{Facet, Occluders};
+use crate::roofs::obstructions::FINEST_SAMPLE_M;
 
 /// A roof lies at most so far below its edges, metres. Assumption: the height of a balustrade.
 const HIGHEST_M: f64 = 1.2;
 /// Two vertices at one place are no farther apart, metres.
 const SAME_PLACE: f64 = 0.01;
-/// Least distance of samples, metres, as where facets are found.
-const FINEST_SAMPLE: f64 = 0.06;
 
 /// A roof that lies below the edges that bound it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -47,7 +46,7 @@ pub(super) fn below_parapets(
     };
     let pixels = scene.views.iter().map(|v| v.camera.ground_pixel(middle));
     let pixel = pixels.fold(f64::INFINITY, f64::min);
-    let sample = pixel.max(FINEST_SAMPLE);
+    let sample = pixel.max(FINEST_SAMPLE_M);
     let reduced = scene.reduced(((sample / pixel) as usize).max(1));
     let step = PlanGrid::cell_of_pixels(sample);
     let found = crate::base::execution::map(facets, |i, facet| {

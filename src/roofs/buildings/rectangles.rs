@@ -16,6 +16,7 @@ pub fn roofs_of_rectangles(found: &RectangleTrace, ground: &Ground) -> RoofModel
 fn facet(index: usize, candidate: &PlaneCandidate) -> Facet {
     Facet {
         proposals: vec![ProposalOrigin::Rectangle(index as u32)],
+        obstructions: Vec::new(),
         building: BuildingId(0),
         plane: candidate.plane,
         outer: candidate.ring.clone(),

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::model_lines::{VerifiedLines, verify_lines};
 use super::parapets::{Parapet, below_parapets};
 use super::refine::{BuildingRefinement, RoofGap, cut_back_at_gaps, refine_roofs};
+use crate::base::evidence::JudgedFacet;
 use crate::base::execution::reached;
 use crate::base::params::Params;
 use crate::lines::lines3d::Line3d;
@@ -13,6 +14,7 @@ use crate::orienting::scene::Scene;
 use crate::planes::terrain::Ground;
 use crate::roofs::facets::CloudEvidence;
 use crate::roofs::model::{Facet, RoofModel};
+use crate::roofs::obstructions::{find_obstructions, take_out_islands};
 use crate::roofs::solids::{SolidTrace, close_above};
 
 /// The steps from closed buildings to refined ones.
@@ -26,6 +28,8 @@ pub struct RefinementTrace {
     pub buildings: Vec<BuildingRefinement>,
     /// Roofs that lie below the edges that bound them.
     pub parapets: Vec<Parapet>,
+    /// Blocks that may stand on the roofs.
+    pub obstructions: Vec<JudgedFacet>,
     /// Walls and ground.
     pub solids: SolidTrace,
     /// What the model says of the lines.
@@ -42,8 +46,8 @@ pub struct UnrefinedFacets {
     pub sources: Vec<usize>,
 }
 
-/// Cuts facets back at gaps, refines the buildings, closes them again, and weighs the lines in
-/// them.
+/// Cuts facets back at gaps, refines the buildings, takes what is no roof out of them, closes them
+/// again, finds what stands on them, and weighs the lines in them.
 pub(crate) fn refine_buildings(
     scene: &Scene,
     lines: &[Line3d],
@@ -58,16 +62,19 @@ pub(crate) fn refine_buildings(
     let (refined, buildings) = refine_roofs(scene, lines, &delineated, &params.roof);
     reached(0.7);
     let (lowered, parapets) = below_parapets(scene, &refined, cloud);
-    let (model, closed) = close_above(&lowered, ground);
+    let (roofs, kept) = take_out_islands(&lowered);
+    let (mut model, closed) = close_above(&roofs, ground);
+    let obstructions = find_obstructions(scene, &mut model);
     let unrefined = UnrefinedFacets {
         facets: delineated.facets,
-        sources: closed.sources.clone(),
+        sources: closed.sources.iter().map(|&i| kept[i]).collect(),
     };
     let trace = RefinementTrace {
         gaps,
         unrefined,
         buildings,
         parapets,
+        obstructions,
         solids: solids.then(closed),
         lines: verify_lines(scene, lines, &model, ground, params),
     };

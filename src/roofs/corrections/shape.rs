@@ -248,6 +248,7 @@ fn new_facet(plane: Plane) -> DraftFacet {
             lines: Vec::new(),
             half_planes: Vec::new(),
             proposals: Vec::new(),
+            obstructions: Vec::new(),
         },
         source: None,
     }

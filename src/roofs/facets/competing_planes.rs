@@ -87,6 +87,7 @@ impl CompetingPlanes {
             lines: group.lines(),
             half_planes: group.half_planes(),
             proposals: group.proposals.clone(),
+            obstructions: Vec::new(),
         }
     }
 

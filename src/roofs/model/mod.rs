@@ -20,7 +20,7 @@ mod walls;
 
 pub(crate) use invariants::is_simple;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
-pub use roof_model::{Building, Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
+pub use roof_model::{Building, Facet, Obstruction, RoofModel, Solid, SolidFace, Surface, WELD_M};
 pub use triangulate::triangulate;
 pub use uncertainty::{CornerUncertainty, FacetUncertainty, SideSupport, SideUncertainty};
 pub use visibility::Occluders;

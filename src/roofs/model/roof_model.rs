@@ -1,10 +1,12 @@
 //! Facets, buildings and their closed solids.
 
-use nalgebra::{Point2, Point3};
+use nalgebra::{Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::uncertainty::FacetUncertainty;
-use crate::base::geometry::{Plane, Polygon, bounds, contains, plan_sides, signed_area};
+use crate::base::geometry::{
+    Plane, Polygon, bounds, contains, mean_point, plan_sides, sides, signed_area,
+};
 use crate::base::ids::{BuildingId, FacetId, HalfPlaneId, LineId, ProposalOrigin};
 
 /// Plan positions closer than this are one, metres. Ten times the step in which coordinates are
@@ -41,6 +43,31 @@ pub struct Facet {
     pub half_planes: Vec<HalfPlaneId>,
     /// What other sources proposed in its plane.
     pub proposals: Vec<ProposalOrigin>,
+    /// What stands on it.
+    pub obstructions: Vec<Obstruction>,
+}
+
+/// Something that stands on a facet and is no roof itself: a chimney, an air handler, a small
+/// dormer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct Obstruction {
+    /// Its outline from above, metres, without repeating the first corner.
+    pub outline: Vec<Point2<f64>>,
+    /// Height of its top above the facet, metres: of the facet below its middle.
+    pub height_m: f64,
+    /// Standard deviation of that, metres; `None` where it was not measured by itself.
+    pub height_sigma_m: Option<f64>,
+    /// Probability that something stands there, 0 to 1.
+    pub probability: f64,
+}
+
+impl Obstruction {
+    /// Do both stand at one place: do they share half of the smaller one?
+    pub fn shares_its_place(&self, other: &Self) -> bool {
+        let [own, others] = [self, other].map(|o| Polygon::from(o.outline.clone()));
+        own.and(&others).area() > 0.5 * own.area().min(others.area())
+    }
 }
 
 impl Facet {
@@ -57,18 +84,42 @@ impl Facet {
         }
     }
 
+    /// The faces of something that stands on it, counter-clockwise seen from outside: the top, then
+    /// the sides. The top is level, or parallel to the facet where that would lie below its base.
+    pub fn faces_of(&self, obstruction: &Obstruction) -> Vec<Vec<Point3<f64>>> {
+        let lift = |p: &Point2<f64>| self.plane.lift(p.x, p.y);
+        let base: Vec<Point3<f64>> = obstruction.outline.iter().map(lift).collect();
+        let level = mean_point(&base).z + obstruction.height_m;
+        let is_above_all = base.iter().all(|p| p.z < level);
+        let top = |p: &Point3<f64>| match is_above_all {
+            true => Point3::new(p.x, p.y, level),
+            false => p + Vector3::z() * obstruction.height_m,
+        };
+        let side = |[p, q]: [Point3<f64>; 2]| vec![p, q, top(&q), top(&p)];
+        std::iter::once(base.iter().map(top).collect())
+            .chain(sides(&base).map(side))
+            .collect()
+    }
+
     /// Does it lie over or under a plan position?
     pub fn covers(&self, p: &Point2<f64>) -> bool {
         contains(self.rings().flat_map(|ring| plan_sides(ring)), p)
     }
 
-    /// The same facet over one part of another polygon.
+    /// The same facet over one part of another polygon, with what stands there.
     pub fn over(&self, part: &Polygon) -> Self {
         let lift = |p: &Point2<f64>| self.plane.lift(p.x, p.y);
         let mut rings = (part.rings.iter()).map(|ring| ring.iter().map(lift).collect());
+        let stands_there = |o: &&Obstruction| part.contains(&mean_point(&o.outline));
         Self {
             outer: rings.next().unwrap_or_default(),
             holes: rings.collect(),
+            obstructions: self
+                .obstructions
+                .iter()
+                .filter(stands_there)
+                .cloned()
+                .collect(),
             ..self.clone()
         }
     }

@@ -23,6 +23,7 @@ fn facet(rings: &[&[(f64, f64)]], z0: f64, gx: f64, gy: f64) -> Facet {
         lines: Vec::new(),
         half_planes: Vec::new(),
         proposals: Vec::new(),
+        obstructions: Vec::new(),
     }
 }
 

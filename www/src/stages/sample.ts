@@ -22,4 +22,5 @@ export const FACET: Facet = {
   lines: [],
   half_planes: [],
   proposals: [],
+  obstructions: [],
 };

@@ -4,10 +4,10 @@
 //! What `ridgeline` states of a facet (standard deviations, probability, photographs) is taken from
 //! the attributes of its surface; files of others have none of it.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 use serde_json::Value;
 
-use super::super::cityjson::{FRAME_SIGMA, HEIGHT_OVER_10_M, LENGTH_OF_10_M};
+use super::super::cityjson::{FRAME_SIGMA, HEIGHT_OVER_10_M, LENGTH_OF_10_M, OBSTRUCTIONS};
 use super::reported::{ReportedModel, ReportedWalls};
 use crate::base::geometry::{Plane, mean_point, plan_sides, vector_area};
 use crate::base::ids::{BuildingId, FacetId};
@@ -15,7 +15,7 @@ use crate::orienting::known::json_of;
 use crate::orienting::orientation::{FrameSigma, PlanUnit, SystemUnits, epsg_of, units_of};
 use crate::orienting::scene::Survey;
 use crate::roofs::model::{
-    CornerUncertainty, Facet, FacetUncertainty, SideSupport, SideUncertainty, Surface,
+    CornerUncertainty, Facet, FacetUncertainty, Obstruction, SideSupport, SideUncertainty, Surface,
 };
 
 /// Roofs are no steeper than this, as the vertical part of a unit normal; what is called a roof and
@@ -205,7 +205,7 @@ fn add_surface(
     match surface["type"].as_str() {
         Some("RoofSurface") => plane_of(rings).map_or(Surface::Wall, |plane| {
             let facet = FacetId::from_index(read.model.facets.len());
-            let facet_of = facet_of(building, plane, rings, surface);
+            let facet_of = facet_of(&read.origin, (building, plane), rings, surface);
             read.model.facets.push(facet_of);
             read.photographs.push(names(&surface["photographs"]));
             Surface::Roof(facet)
@@ -233,7 +233,12 @@ pub(super) fn plane_of(rings: &[Vec<Point3<f64>>]) -> Option<Plane> {
     plane.or_else(|| Plane::from_point_normal(&middle, &Vector3::z()).filter(|_| is_sliver))
 }
 
-fn facet_of(id: BuildingId, plane: Plane, rings: &[Vec<Point3<f64>>], surface: &Value) -> Facet {
+fn facet_of(
+    origin: &Vector3<f64>,
+    (id, plane): (BuildingId, Plane),
+    rings: &[Vec<Point3<f64>>],
+    surface: &Value,
+) -> Facet {
     let number = |name: &str| surface[name].as_f64();
     Facet {
         building: id,
@@ -247,7 +252,27 @@ fn facet_of(id: BuildingId, plane: Plane, rings: &[Vec<Point3<f64>>], surface: &
         lines: Vec::new(),
         half_planes: Vec::new(),
         proposals: Vec::new(),
+        obstructions: obstructions_of(origin, surface),
     }
+}
+
+/// What stands on a facet, as far as it is stated whole.
+fn obstructions_of(origin: &Vector3<f64>, surface: &Value) -> Vec<Obstruction> {
+    let place = |p: &Value| match numbers(p).as_deref() {
+        Some(&[x, y]) => Some(Point2::new(x - origin.x, y - origin.y)),
+        _ => None,
+    };
+    let obstruction = |stated: &Value| {
+        let outline: Option<Vec<_>> = list(&stated["outline"])?.iter().map(place).collect();
+        Some(Obstruction {
+            outline: outline.filter(|outline| outline.len() >= 3)?,
+            height_m: stated["height"].as_f64()?,
+            height_sigma_m: stated["heightSigma"].as_f64(),
+            probability: stated["probability"].as_f64().unwrap_or(1.0),
+        })
+    };
+    let stated = list(&surface[OBSTRUCTIONS]).into_iter().flatten();
+    stated.filter_map(obstruction).collect()
 }
 
 fn uncertainty_of(surface: &Value, rings: &[Vec<Point3<f64>>]) -> Option<FacetUncertainty> {

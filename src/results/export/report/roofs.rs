@@ -12,7 +12,7 @@ use super::super::format::{rounded, to_bytes};
 use super::reported::ReportedModel;
 use crate::base::geometry::{Polygon, bounds, mean_point};
 use crate::results::roof_report::{BuildingReport, EdgeReport, Estimate, FacetReport};
-use crate::roofs::model::Facet;
+use crate::roofs::model::{Facet, Obstruction};
 
 /// The file.
 pub(super) fn roofs(reported: &ReportedModel) -> Vec<u8> {
@@ -23,6 +23,7 @@ pub(super) fn roofs(reported: &ReportedModel) -> Vec<u8> {
             "title": rule.title,
             "source": rule.source,
             "aboveSlope": rule.above_slope,
+            "obstructionMeters": rule.obstruction_m,
             "setbackMeters": by_kind.collect::<std::collections::BTreeMap<_, _>>(),
         })
     });
@@ -90,6 +91,9 @@ fn segment(reported: &ReportedModel, report: &FacetReport) -> Value {
         "stats": stats(report.area_m2, report.plan_area_m2),
         "polygon": rings(reported, facet, &facet.plan()),
         "usable": usable.collect::<Value>(),
+        "obstructions": (facet.obstructions.iter())
+            .map(|obstruction| obstruction_of(reported, facet, obstruction))
+            .collect::<Value>(),
         "photographs": reported.photographs[report.facet.index()],
         "pvgis": reported.pvgis(report),
     });
@@ -107,6 +111,22 @@ fn segment(reported: &ReportedModel, report: &FacetReport) -> Value {
     };
     add(&mut segment, "planeHeightAtCenter", "Meters", height);
     segment
+}
+
+/// What stands on a face: its outline there, and how high it rises above it.
+fn obstruction_of(reported: &ReportedModel, facet: &Facet, obstruction: &Obstruction) -> Value {
+    let outline = Polygon::from(obstruction.outline.clone());
+    let mut value = json!({
+        "polygon": rings(reported, facet, &outline),
+        "groundAreaMeters2": rounded(outline.area(), 4),
+        "probability": rounded(obstruction.probability, 4),
+    });
+    let height = Estimate {
+        value: obstruction.height_m,
+        sigma: obstruction.height_sigma_m,
+    };
+    add(&mut value, "height", "Meters", height);
+    value
 }
 
 fn edge_of(reported: &ReportedModel, report: &EdgeReport) -> Value {

@@ -3,7 +3,7 @@
 
 use nalgebra::{Point2, Point3, center};
 
-use super::super::cityjson::{whole_corners, written_frame};
+use super::super::cityjson::{in_plan, whole_corners, written_frame};
 use super::super::format::rounded;
 use super::super::measured::Measured;
 use super::read::plane_of;
@@ -12,7 +12,8 @@ use crate::base::geometry::plan_sides;
 use crate::base::ids::{BuildingId, FacetId};
 use crate::orienting::scene::{Scene, Survey};
 use crate::roofs::model::{
-    BuildingWalls, CornerUncertainty, Facet, FacetUncertainty, RoofModel, SideUncertainty, Surface,
+    BuildingWalls, CornerUncertainty, Facet, FacetUncertainty, Obstruction, RoofModel,
+    SideUncertainty, Surface,
 };
 use crate::roofs::solids::WRITTEN_STEP_M;
 
@@ -51,7 +52,7 @@ impl ReportedModel {
                     .map(|ring| ring.iter().map(corner).collect())
                     .collect();
                 let surface = match face.surface {
-                    Surface::Roof(id) => written.add_facet((model, measured), id, &rings),
+                    Surface::Roof(id) => written.add_facet(scene, (model, measured), id, &rings),
                     Surface::Ground => Surface::Ground,
                     Surface::Wall | Surface::Ceiling => Surface::Wall,
                 };
@@ -74,6 +75,7 @@ impl ReportedModel {
     /// Adds a facet over these rings; a wall where it does not look up.
     fn add_facet(
         &mut self,
+        scene: &Scene,
         (model, measured): (&RoofModel, &Measured),
         id: FacetId,
         rings: &Rings,
@@ -95,10 +97,27 @@ impl ReportedModel {
             lines: Vec::new(),
             half_planes: Vec::new(),
             proposals: Vec::new(),
+            obstructions: (facet.obstructions.iter())
+                .map(|obstruction| written_obstruction(scene, obstruction))
+                .collect(),
         });
         self.photographs
             .push(measured.photographs[id.index()].clone());
         Surface::Roof(next)
+    }
+}
+
+/// As the file states it, and as it is read.
+fn written_obstruction(scene: &Scene, obstruction: &Obstruction) -> Obstruction {
+    let coordinate = |p: &Point2<f64>, k| in_plan(scene, p, k) - scene.origin[k];
+    let outline = obstruction.outline.iter();
+    Obstruction {
+        outline: outline
+            .map(|p| [0, 1].map(|k| coordinate(p, k)).into())
+            .collect(),
+        height_m: rounded(obstruction.height_m, 4),
+        height_sigma_m: obstruction.height_sigma_m.map(|sigma| rounded(sigma, 4)),
+        probability: rounded(obstruction.probability, 4),
     }
 }
 

@@ -325,6 +325,7 @@ mod tests {
             lines: lines.to_vec(),
             half_planes: Vec::new(),
             proposals: Vec::new(),
+            obstructions: Vec::new(),
         };
         RoofModel {
             facets: truth.facets.iter().map(facet).collect(),

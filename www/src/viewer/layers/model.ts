@@ -51,6 +51,16 @@ export async function buildModel(
     }
   });
   const textured = new Map(meshes.map((mesh) => [mesh, mesh.material as Material]));
+  // What stands on roofs has no photograph: a dark one's material needs no program of its own.
+  for (const mesh of meshes.filter((mesh) => extra(mesh, "surface") === "obstruction")) {
+    const dark = (textured.get(meshes[0] as Mesh) as MeshBasicMaterial).clone();
+    dark.color.multiplyScalar(0.4);
+    textured.get(mesh)?.dispose();
+    textured.set(mesh, dark);
+    mesh.material = dark;
+  }
+  const own = [...new Set(textured.values())] as MeshBasicMaterial[];
+  const colours = new Map(own.map((material) => [material, material.color.clone()]));
   await inShortTasks(meshes, addTint);
   const normals = new MeshBasicMaterial({
     vertexColors: true,
@@ -81,9 +91,9 @@ export async function buildModel(
     highlight(selection: Selection | null) {
       const isChosen = (mesh: Mesh) => matches(mesh, selection);
       const chosen = meshes.filter(isChosen);
-      for (const material of new Set(textured.values())) {
+      for (const [material, colour] of colours) {
         const tint = chosen.length > 0 ? DIMMED : new Color(1, 1, 1);
-        (material as MeshBasicMaterial).color?.copy(tint);
+        material.color.copy(colour).multiply(tint);
       }
       marker.show(chosen.length === 0 ? null : markerOf(chosen));
     },

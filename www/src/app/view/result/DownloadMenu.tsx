@@ -30,6 +30,7 @@ const GROUPS: readonly (readonly [title: string, files: Files])[] = [
       "footprints.geojson": "outlines on the ground",
       "facets.geojson": "roof faces in plan: areas, slopes, directions",
       "edges.geojson": "ridges, hips, valleys, eaves, rakes",
+      "obstructions.geojson": "what stands on the roofs, with heights",
     },
   ],
   [
