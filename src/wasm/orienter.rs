@@ -17,7 +17,7 @@ use crate::base::execution::{MergedShards, with_listener};
 use crate::orienting::orientation::InputFile;
 use crate::orienting::structure_from_motion::{
     CameraReport, ControlResidual, FeatureOptions, Intrinsics, OrientChain, OrientOptions,
-    OrientReport, Oriented, PairSummary, PhotoReport, Pose, ReadPhoto, Snapshot,
+    OrientReport, Oriented, PairSummary, PhotoReport, PlanCoverage, Pose, ReadPhoto, Snapshot,
 };
 use crate::photographs::camera::Camera;
 
@@ -102,6 +102,10 @@ struct OrientationReport<'a> {
     left_out: Vec<NotOriented>,
     /// Pairs of `photos` by their indices, and the points that they share.
     overlap: &'a [(usize, usize, usize)],
+    /// What the photographs show of the area, and from where another one would tell most.
+    coverage: Option<&'a PlanCoverage>,
+    /// The same, a sentence each.
+    coverage_words: Vec<String>,
     /// What is doubtful.
     warnings: &'a [String],
 }
@@ -364,6 +368,8 @@ impl Orienter {
                 })
                 .collect(),
             overlap: &report.overlap,
+            coverage: report.coverage.as_ref(),
+            coverage_words: report.coverage_words(),
             warnings: &report.warnings,
         })
     }

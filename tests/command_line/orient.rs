@@ -125,6 +125,15 @@ fn photographs_alone_are_oriented_into_a_folder_that_is_read_on() {
         "points3D.txt",
     ];
     assert_eq!(names_in(&photographs.out()), expected);
+    let report = std::fs::read(photographs.out().join("orientation.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
+    let coverage = &report["coverage"];
+    let shares = coverage["shares"].as_array().unwrap().iter();
+    let sum: f64 = shares.map(|share| share.as_f64().unwrap()).sum();
+    assert!((sum - 1.0).abs() < 1e-9, "{coverage}");
+    let enough = (coverage["shares"][0].as_f64().unwrap() * 100.0).round();
+    let words = format!("of the area {enough} % are shown by 5 photographs or more");
+    assert!(printed.contains(&words), "{printed}");
     let first = contents_of(&photographs.out());
     assert!(
         photographs

@@ -53,8 +53,9 @@ pub use orient::{
     orient,
 };
 pub use output::{
-    CameraReport, ControlSheet, LeftOut, MeasuredLength, NotJoined, NotMeasured, OrientReport,
-    OrientedPhoto, PhotoReport, SparseModel, SparsePoint,
+    CameraReport, ControlSheet, CoveredCell, LeftOut, MeasuredLength, NotJoined, NotMeasured,
+    OrientReport, OrientedPhoto, PhotoReport, PlanCoverage, ProposedPhoto, SparseModel,
+    SparsePoint,
 };
 pub use similarity_fit::KnownOf;
 pub use two_view::PairKind;

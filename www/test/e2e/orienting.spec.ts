@@ -49,6 +49,11 @@ test("photographs alone: cameras in space, a scale, epipolar lines, and on into 
   await height.press("Enter");
   await expect(report).toContainText("scale from the height of the cameras above the points, 45 m");
   await expect(space).toContainText("grid 10 m");
+  await expect(report).toContainText(/Of the area \d+ % are shown by 5 photographs or more/);
+  const coverage = report.getByTestId("coverage-plan");
+  await expect(coverage.locator("circle")).toHaveCount(photographs.length);
+  const shown = coverage.locator("rect title");
+  await expect(shown.filter({ hasText: /^\d+ photographs, from directions up to \d+° apart; a height .* m$/ })).not.toHaveCount(0);
 
   const pair = page.getByTestId("pair-figure");
   const second = pair.locator("canvas").nth(1);

@@ -29,7 +29,9 @@ use crate::orienting::structure_from_motion::ground_control::{
 use crate::orienting::structure_from_motion::incremental::VerifiedPair;
 use crate::orienting::structure_from_motion::intrinsics::Intrinsics;
 use crate::orienting::structure_from_motion::matching::candidate_pairs;
-use crate::orienting::structure_from_motion::output::{LeftOut, Names, report, sparse_model};
+use crate::orienting::structure_from_motion::output::{
+    LeftOut, Names, PlanCoverage, report, sparse_model,
+};
 use crate::orienting::structure_from_motion::two_view::PairKind;
 use crate::orienting::structure_from_motion::verification::{
     Guess, MatchedPhoto, guess_focal, match_pairs, verify,
@@ -333,6 +335,7 @@ impl OrientChain {
             .map(|note| format!("; {note}"))
             .collect::<String>();
         report.warnings.extend(doubts);
+        report.coverage = PlanCoverage::of(&model, report.anchor.as_ref());
         Ok(Oriented { model, report })
     }
 

@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use crate::base::error::{Error, Result};
 use crate::base::geometry::mean_point;
 use crate::orienting::structure_from_motion::features::FeatureOptions;
-use crate::orienting::structure_from_motion::output::{OrientReport, SparseModel};
+use crate::orienting::structure_from_motion::output::{OrientReport, PlanCoverage, SparseModel};
 
 /// How photographs are oriented.
 #[derive(Clone, Debug, Default)]
@@ -74,6 +74,7 @@ impl Oriented {
             .map(|(photo, before)| photo.pose.center - before)
             .collect();
         (self.report).scale(factor, &moved, &format!("{words}, {metres} m"));
+        self.report.coverage = PlanCoverage::of(&self.model, self.report.anchor.as_ref());
         Ok(())
     }
 }

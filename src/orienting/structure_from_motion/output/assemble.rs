@@ -151,6 +151,7 @@ pub(in super::super) fn report(
         photos,
         left_out,
         overlap: counts.overlap(&registered),
+        coverage: None,
         warnings,
     }
 }

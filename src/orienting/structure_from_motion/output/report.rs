@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
+use super::coverage::PlanCoverage;
 use super::sheet::{control_tables, worth_words};
 use crate::orienting::orientation::FrameSigma;
 use crate::orienting::structure_from_motion::frame::Lag;
@@ -145,6 +146,8 @@ pub struct OrientReport {
     pub left_out: Vec<LeftOut>,
     /// Pairs whose matches agree with one geometry: indices of `photos` and shared points.
     pub overlap: Vec<(usize, usize, usize)>,
+    /// What the photographs show of the area.
+    pub coverage: Option<PlanCoverage>,
     /// What is doubtful.
     pub warnings: Vec<String>,
 }
@@ -166,6 +169,11 @@ impl OrientReport {
         self.block_words() + &self.remarks()
     }
 
+    /// What the photographs show of the area, and where another one would tell most, a sentence each.
+    pub fn coverage_words(&self) -> Vec<String> {
+        (self.coverage.as_ref()).map_or_else(Vec::new, |coverage| coverage.words(self.offset))
+    }
+
     /// What scale and level of the frame are worth, and the lag of the receiver, a sentence each.
     pub fn worth(&self) -> Vec<String> {
         worth_words(self.frame_sigma.as_ref(), self.lag.as_ref())
@@ -182,7 +190,7 @@ impl OrientReport {
             self.rms_px,
             self.frame
         );
-        for words in self.worth() {
+        for words in self.worth().into_iter().chain(self.coverage_words()) {
             text += &(words + "\n");
         }
         for camera in &self.cameras {

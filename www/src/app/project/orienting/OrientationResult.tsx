@@ -7,6 +7,7 @@ import { baseName } from "../inputFiles";
 import { KnownLength } from "./KnownLength";
 import { block, computeOrientation, saveOrientation, saveOrientationFiles } from "./orientation";
 import { ControlPoints } from "./plans/ControlPoints";
+import { CoveragePlan } from "./plans/CoveragePlan";
 import { OverlapPlan } from "./plans/OverlapPlan";
 import { ResidualPlan } from "./plans/ResidualPlan";
 
@@ -64,6 +65,10 @@ export function OrientationResult({ report }: { report: OrientationReport }) {
       <ControlPoints control={report.control} />
       <ResidualPlan report={report} centres={centres} />
       <KnownLength report={report} />
+      {report.coverage_words.map((words) => (
+        <p key={words}>{sentence(words)}</p>
+      ))}
+      <CoveragePlan report={report} centres={centres} />
       <OverlapPlan report={report} centres={centres} />
       <Photographs report={report} />
       <h3>Files of the orientation (COLMAP)</h3>
