@@ -66,6 +66,7 @@ const FLOORS: [(&str, &[&str]); 12] = [
             "testing",
             "solids",
             "facets",
+            "obstructions",
             "buildings",
             "corrections",
             "walls",

@@ -30,6 +30,12 @@ pub(super) enum Command {
     Join(JoinArgs),
     /// Make the roof report of a model again, from its CityJSON: a page that prints, tables, JSON.
     Report(ReportArgs),
+    /// Compare two models of one place, from their CityJSON: what both have, and by how much it
+    /// differs.
+    Compare(CompareArgs),
+    /// Correct the model of a CityJSON file by hand, without photographs, and write it in all
+    /// formats; in its CityJSON what no correction is about keeps its bytes.
+    Correct(CorrectArgs),
     /// Print all parameters with their defaults, as JSON for --params.
     Params,
 }
@@ -130,6 +136,31 @@ pub(super) struct ReportArgs {
     /// Setbacks of one's own beside the built-in ones: a rule file, as docs/report.md describes it.
     #[arg(long, value_name = "FILE")]
     pub setbacks: Option<PathBuf>,
+}
+
+/// The arguments of `compare`.
+#[derive(Args)]
+pub(super) struct CompareArgs {
+    /// Folder that `reconstruct` wrote, or a CityJSON file.
+    pub first: PathBuf,
+    /// The model that it is compared with, likewise.
+    pub second: PathBuf,
+    /// Print everything as JSON, facet by facet.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The arguments of `correct`.
+#[derive(Args)]
+pub(super) struct CorrectArgs {
+    /// Folder that `reconstruct` wrote, or a CityJSON file of anybody.
+    pub model: PathBuf,
+    /// JSON file with corrections by hand, as the page writes it.
+    #[arg(long, value_name = "FILE")]
+    pub corrections: PathBuf,
+    /// Folder for the corrected model; made if missing.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 /// The arguments of `check`.

@@ -10,7 +10,7 @@
 //! tiles, table    a region tile by tile; the summary of a run
 //! block           a large area on many machines: plan, tile, join
 //! reconstruct     the whole reconstruction
-//! report          the roof report of a finished model
+//! model           of a finished model: its roof report, a comparison, corrections
 //! ```
 //!
 //! Exit codes: 0 done, 1 the outputs could not be written, 2 the input or the arguments are bad.
@@ -22,9 +22,9 @@ mod check;
 mod failure;
 mod files;
 mod input;
+mod model;
 mod orient;
 mod reconstruct;
-mod report;
 mod scene_files;
 mod table;
 mod tiles;
@@ -47,7 +47,9 @@ pub fn main() -> ExitCode {
         Command::Join(args) => block::join(&args),
         Command::Check(args) => check::check(&args),
         Command::Orient(args) => orient::orient(&args),
-        Command::Report(args) => report::report(&args),
+        Command::Report(args) => model::report(&args),
+        Command::Compare(args) => model::compare(&args),
+        Command::Correct(args) => model::correct(&args),
         Command::Params => print_params(),
     };
     match outcome {

@@ -49,9 +49,9 @@ use crate::planes::half_planes::HalfPlane;
 use crate::planes::objectspace::{image_segments, world_lines};
 use crate::planes::terrain::Ground;
 use crate::results::export;
-use crate::results::export::{ReportedModel, export_all};
+use crate::results::export::{ReportedModel, correct_file, export_all};
 use crate::results::texture::TexturedModel;
-use crate::roofs::buildings::{OtherGround, other_ground};
+use crate::roofs::buildings::{OtherGround, RefinementTrace, other_ground};
 use crate::roofs::model::{BuildingWalls, RoofModel};
 
 /// Segments of all views, and 3D lines.
@@ -166,7 +166,20 @@ pub struct Run {
     params: Params,
     results: Results,
     summaries: Vec<StageSummary>,
+    /// The CityJSON file whose model takes the place of what photographs show.
+    opened: Option<Vec<u8>>,
 }
+
+/// Files of what was found in photographs, and those that would say less of an opened model than
+/// its own file.
+const OF_PHOTOGRAPHS: [&str; 6] = [
+    "model.city.jsonl",
+    "lines.csv",
+    "lines.json",
+    "segments.json",
+    "halfplanes.json",
+    "evidence.json",
+];
 
 impl Run {
     /// A run of which no stage has been done.
@@ -177,9 +190,22 @@ impl Run {
             params,
             results: Results::default(),
             summaries: Vec::new(),
+            opened: None,
         };
         run.restore_cameras();
         run
+    }
+
+    /// A run on the model of a CityJSON file, without photographs: it is corrected, and written.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, with what was expected and where.
+    pub fn of_model(city_json: Vec<u8>, params: Params) -> std::result::Result<Self, String> {
+        let read = ReportedModel::read(&city_json)?;
+        let mut run = Self::new(read.scene(), params);
+        run.results.refinement = Some((read.model().clone(), RefinementTrace::default()).into());
+        run.opened = Some(city_json);
+        Ok(run)
     }
 
     /// The scene, its views adjusted as far as the stages have run.
@@ -204,12 +230,15 @@ impl Run {
 
     /// The stages that the chosen sources of planes need, in their order.
     pub fn stages(&self) -> Vec<Stage> {
-        Stage::of(self.params.sources())
+        match self.opened.is_some() {
+            true => Stage::WITHOUT_VIEWS.into(),
+            false => Stage::of(self.params.sources()),
+        }
     }
 
     /// Changes the parameters and drops the results that they would change.
     pub fn set_params(&mut self, params: Params) {
-        let first = if params.sources() == self.params.sources() {
+        let first = if params.sources() == self.params.sources() || self.opened.is_some() {
             let (old, new) = (as_json(&self.params), as_json(&params));
             let reads_change = |stage: &Stage| {
                 let mut paths = stage.reads().iter();
@@ -323,6 +352,13 @@ impl Run {
             textured: outputs.textured,
         };
         let mut files = export_all(&borrowed, &self.params.texture);
+        if let Some(opened) = &self.opened {
+            files.retain(|(name, _)| !OF_PHOTOGRAPHS.contains(&&name[..]));
+            // One that holds a building a line is written as one object.
+            if let Ok(corrected) = correct_file(opened, &self.params.corrections, &self.params) {
+                files[0].1 = corrected.bytes;
+            }
+        }
         let known = report::KnownReport {
             terrain: (self.results.ground.as_ref())
                 .and_then(|ground| ground.terrain())
@@ -355,7 +391,10 @@ impl Run {
         let model = r.roof_model()?;
         let last = r.model.as_ref()?;
         let (walls, textured) = (&last.walls[..], &last.value);
-        let (segments, lines) = r.segments_and_lines(&self.scene)?;
+        let (segments, lines) = match self.opened {
+            Some(_) => (Cow::Borrowed(&[][..]), Cow::Borrowed(&[][..])),
+            None => r.segments_and_lines(&self.scene)?,
+        };
         Some(Outputs {
             segments,
             lines,

@@ -10,6 +10,7 @@ const PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/www/src/shared/stages.t
 
 fn page_table() -> String {
     let method_names: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();
+    let without: Vec<&str> = Stage::WITHOUT_VIEWS.iter().map(|s| s.name()).collect();
     let rows: Vec<String> = Stage::ALL.iter().map(|stage| row(*stage)).collect();
     format!(
         "/** The stages and methods of the core. Written by `make golden` from src/pipeline/stages. */\n\n\
@@ -17,7 +18,9 @@ fn page_table() -> String {
          export type Method = (typeof METHODS)[number];\n\n\
          /** In their order; each with the methods that have it, and the parameters that it reads. */\n\
          export const STAGES = [\n{}] as const;\n\
-         export type StageName = (typeof STAGES)[number][\"name\"];\n",
+         export type StageName = (typeof STAGES)[number][\"name\"];\n\n\
+         /** Those of a model that is there already. */\n\
+         export const STAGES_WITHOUT_VIEWS: readonly StageName[] = {without:?};\n",
         rows.concat()
     )
 }

@@ -14,6 +14,7 @@ use crate::planes::adjacency::{AdjacencyTrace, CornerPlane};
 use crate::planes::coplanar::{CoplanarSet, CoplanarTrace};
 use crate::planes::dense::{DensePlane, DenseTrace};
 use crate::planes::objectspace::{Window, WindowTrace};
+use crate::results::export::ReportedModel;
 use crate::results::roof_report::SetbackRule;
 use crate::results::texture::texture_ground;
 
@@ -258,6 +259,16 @@ impl Session {
         })
     }
 
+    /// Compares the model with that of a CityJSON file: what both have, and by how much it differs.
+    #[wasm_bindgen(js_name = compareWith, unchecked_return_type = "ComparedModels")]
+    pub fn compare_with(&self, city_json: &[u8]) -> Result<JsValue, JsValue> {
+        let refused = |problem: String| named_error("InputError", &format!("the file {problem}"));
+        let own = self.reported()?;
+        let other = ReportedModel::read(city_json).map_err(refused)?;
+        let refused = |problem: String| named_error("InputError", &problem);
+        to_js(&own.compare(&other).map_err(refused)?)
+    }
+
     /// Makes the files of the report anew with setbacks of one's own, the text of a rule file,
     /// beside the built-in ones.
     #[wasm_bindgen(js_name = reportWith)]
@@ -265,12 +276,7 @@ impl Session {
         let refused = |problem: String| named_error("InputError", &format!("the file {problem}"));
         let rules = SetbackRule::with(setbacks).map_err(refused)?;
         self.outputs()?;
-        let reported = match &self.run {
-            Some(run) => run.reported(),
-            None => self.joined.clone(),
-        };
-        let not_run = || named_error("RangeError", "there is no report: run all stages first");
-        let written = reported.ok_or_else(not_run)?.files(&rules);
+        let written = self.reported()?.files(&rules);
         let outputs = self.outputs.get_or_insert_default();
         outputs.retain(|(name, _)| written.iter().all(|(new, _)| new != name));
         outputs.extend(written);
@@ -279,6 +285,16 @@ impl Session {
 }
 
 impl Session {
+    /// The model of the finished run, or of joined tiles.
+    fn reported(&self) -> Result<ReportedModel, JsValue> {
+        let reported = match &self.run {
+            Some(run) => run.reported(),
+            None => self.joined.clone(),
+        };
+        let not_run = || named_error("RangeError", "there is no report: run all stages first");
+        reported.ok_or_else(not_run)
+    }
+
     fn outputs(&mut self) -> Result<&[(String, Vec<u8>)], JsValue> {
         // Joined tiles have files and no run.
         if self.outputs.is_none() {

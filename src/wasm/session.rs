@@ -11,7 +11,7 @@ use crate::base::execution::MergedShards;
 use crate::base::params::Params;
 use crate::orienting::orientation::{InputFile, PhotographHead};
 use crate::orienting::scene_loader::{
-    LoadOptions, Project, SHOWN, inspect_files, load_scene, open_project, unpack,
+    LoadOptions, Project, SHOWN, inspect_files, load_scene, open_project, opened_model, unpack,
 };
 use crate::pipeline::{PackedView, Run, Stage};
 use crate::planes::half_planes::PointsOfInterest;
@@ -243,8 +243,14 @@ impl Session {
         self.run = None;
         self.outputs = None;
         self.points = None;
-        let scene = load_scene(&self.files, &options).map_err(|e| input_error(&e))?;
-        self.run = Some(Run::new(scene, self.params.clone()));
+        self.run = Some(match opened_model(&self.files) {
+            Some(file) => Run::of_model(file.bytes.clone(), self.params.clone())
+                .map_err(|e| named_error("InputError", &format!("{} {e}", file.path)))?,
+            None => {
+                let scene = load_scene(&self.files, &options).map_err(|e| input_error(&e))?;
+                Run::new(scene, self.params.clone())
+            }
+        });
         self.scene()
     }
 

@@ -1,4 +1,4 @@
-//! `ridgeline report`: the roof report of a model that is there.
+//! What is asked of a model that is there: its roof report, a comparison, corrections.
 
 use std::fs;
 use std::path::Path;
@@ -43,6 +43,7 @@ fn a_report_is_made_again_and_of_what_is_no_model_it_is_not() {
             "roofs.json"
         ]
     );
+    compared_with_itself_and_corrected(&scene, &city);
     for (path, reason) in [
         (scene.out().join("report.json"), "is no CityJSON"),
         (scene.0.path().join("nothing"), "cannot be read"),
@@ -56,4 +57,63 @@ fn a_report_is_made_again_and_of_what_is_no_model_it_is_not() {
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(error.contains(reason), "{error}");
     }
+}
+
+/// Deletes a building of the model: the rest is as before.
+fn compared_with_itself_and_corrected(scene: &Scene, city: &Path) {
+    let run = |arguments: &[&Path]| {
+        let command = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
+            .args(arguments)
+            .output();
+        command.unwrap()
+    };
+    let compared = run(&[
+        Path::new("compare"),
+        &scene.out(),
+        city,
+        Path::new("--json"),
+    ]);
+    let compared: serde_json::Value = serde_json::from_slice(&compared.stdout).unwrap();
+    let buildings = compared["buildings"].as_array().unwrap();
+    assert!(!buildings.is_empty());
+    for building in buildings {
+        assert_eq!(building["first"], building["second"]);
+        assert_eq!(building["above_m"], 0.0);
+    }
+    let model: serde_json::Value = serde_json::from_slice(&fs::read(city).unwrap()).unwrap();
+    let [x, y, z] = [0, 1, 2].map(|axis| {
+        let object = &model["CityObjects"]["building-0"]["geometry"][0];
+        let roof = (0..).find(|i| object["semantics"]["surfaces"][i]["type"] == "RoofSurface");
+        let ring = object["boundaries"][0][roof.unwrap()][0]
+            .as_array()
+            .unwrap();
+        let corners = ring.iter().map(|v| {
+            let corner = &model["vertices"][v.as_u64().unwrap() as usize];
+            let number = |name: &str| model["transform"][name][axis].as_f64().unwrap();
+            corner[axis].as_f64().unwrap() * number("scale") + number("translate")
+        });
+        corners.sum::<f64>() / ring.len() as f64
+    });
+    let list = scene.0.path().join("corrections.json");
+    let deleted = format!(r#"[{{"correction": "delete_building", "building": [{x}, {y}, {z}]}}]"#);
+    fs::write(&list, deleted).unwrap();
+    let corrected = scene.0.path().join("corrected");
+    let output = run(&[
+        Path::new("correct"),
+        city,
+        Path::new("--corrections"),
+        &list,
+        Path::new("--out"),
+        &corrected,
+    ]);
+    let printed = crate::printed(&output);
+    assert!(printed.contains("model.ifc"), "{printed}");
+    let text = crate::printed(&run(&[Path::new("compare"), city, &corrected]));
+    let others = buildings.len() - 1;
+    assert!(
+        text.starts_with(&format!(
+            "{others} buildings in both models, 1 in the first alone"
+        )),
+        "{text}"
+    );
 }

@@ -5,6 +5,7 @@
 
 mod broken_solids;
 mod city;
+mod corrected;
 mod glb;
 mod ifc;
 mod meshes;

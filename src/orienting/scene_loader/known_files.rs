@@ -32,6 +32,25 @@ pub(super) fn kinds_of(files: &[InputFile], options: &LoadOptions) -> Vec<FileKi
     files.iter().map(kind).collect()
 }
 
+/// The CityJSON file whose model is opened, where there are no photographs and no orientation; `None`
+/// also where there are several.
+pub fn opened_model(files: &[InputFile]) -> Option<&InputFile> {
+    let kinds = kinds_of(files, &LoadOptions::default());
+    let mut models = None;
+    for (file, kind) in files.iter().zip(&kinds) {
+        match kind {
+            FileKind::Footprints if file.text().contains("\"CityObjects\"") => {
+                if models.replace(file).is_some() {
+                    return None;
+                }
+            }
+            FileKind::Ignored | FileKind::Footprints | FileKind::Terrain => {}
+            _ => return None,
+        }
+    }
+    models
+}
+
 /// The scene that things are known of.
 pub(super) struct KnownOf<'a> {
     pub system: WorldSystem,

@@ -53,6 +53,7 @@ pub use inspect::{
     FileReport, Flight, FlightOverview, Footprint, GroundSource, ImageReport, Inspection, Overlap,
     ShownArea, ViewWindow, inspect_files,
 };
+pub use known_files::opened_model;
 pub use load::{PlannedScene, load_scene, whole_views};
 #[cfg(target_arch = "wasm32")]
 pub(crate) use project::SHOWN;

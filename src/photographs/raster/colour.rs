@@ -3,7 +3,8 @@
 use glam::Vec3;
 use nalgebra::Point2;
 
-/// Bilinear colour, 0 to 255, at an image position; `None` outside the centres of the border pixels.
+/// Bilinear colour, 0 to 255, at an image position; `None` outside the centres of the border
+/// pixels.
 pub(crate) fn colour_at(rgb: &image::RgbImage, p: &Point2<f64>) -> Option<Vec3> {
     let (x, y) = (p.x - 0.5, p.y - 0.5);
     let (w, h) = (rgb.width() as usize, rgb.height() as usize);

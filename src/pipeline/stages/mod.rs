@@ -233,6 +233,9 @@ pub(super) struct Row {
 }
 
 impl Stage {
+    /// What is left to do of a model that is there already.
+    pub const WITHOUT_VIEWS: &'static [Self] = &[Self::Corrections, Self::Model];
+
     /// The stages that sources of planes need, in their order.
     pub fn of(sources: &[Source]) -> Vec<Self> {
         let is_needed = |stage: &Self| sources.iter().any(|&s| (stage.row().needed_by)(s));

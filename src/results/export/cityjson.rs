@@ -31,6 +31,40 @@ const THEME: &str = "photographs";
 
 /// The attribute of a roof surface that says what stands on it.
 pub(super) const OBSTRUCTIONS: &str = "obstructions";
+/// What is said of the shape of a building and of a roof surface: untrue of another shape.
+pub(super) const OF_ITS_SHAPE: &[&str] = &[
+    "area",
+    "areaSigma",
+    "azimuthDeg",
+    "azimuthSigmaDeg",
+    "cornerProbability",
+    "cornerSigma",
+    "heightSigma",
+    "highestHeight",
+    "highestHeightSigma",
+    "highestRoofHeight",
+    "highestRoofHeightSigma",
+    "lengths",
+    "lowestHeight",
+    "lowestHeightSigma",
+    "lowestRoofHeight",
+    "lowestRoofHeightSigma",
+    OBSTRUCTIONS,
+    "planArea",
+    "planAreaSigma",
+    "roofArea",
+    "roofAreaSigma",
+    "roofFacets",
+    "sideSigma",
+    "sideSupport",
+    "slopeDeg",
+    "slopeSigmaDeg",
+    "volume",
+    "volumeSigma",
+    "volumeWithinWalls",
+    "walls",
+    "wallsSeen",
+];
 /// The attribute of a building that says what scale and level of the frame are worth, and its
 /// members.
 pub(super) const FRAME_SIGMA: &str = "frameSigma";

@@ -21,12 +21,14 @@
 //! | `lines.json`, `segments.json`, `halfplanes.json` | what the model was made from |
 //! | `evidence.json` | what spoke for every candidate, and against it |
 //!
+//! `corrected_file` corrects a CityJSON file of anybody, whose other bytes stay.
 //! `format` and `measured` hold what the writers share,
 //! `walls` the LoD 2.3 solids of CityJSON.
 //!
 //! Invariant: the same input gives the same bytes; nothing writes a date, a path or a random id.
 
 mod cityjson;
+mod corrected_file;
 mod evidence;
 mod format;
 mod geojson;
@@ -40,13 +42,14 @@ mod report;
 mod tileset;
 mod walls;
 
+pub use corrected_file::{CorrectedFile, correct_file};
 pub use evidence::evidence_json;
 pub use format::{ATLAS_FILE, MATERIAL_FILE};
 pub use glb::{glb, glb_of};
 pub use json::{half_planes_json, lines_json, segments_json};
 pub use mesh::{mtl, obj, ply};
 pub use plans::{dxf, lines_csv};
-pub use report::ReportedModel;
+pub use report::{ComparedModels, ReportedModel};
 pub use tileset::{SquareContent, TILESET_FILE, tileset_of_squares};
 
 use image::codecs::jpeg::JpegEncoder;

@@ -2,6 +2,7 @@
 //! and rakes, heights, volumes, each with its standard deviation, and the photographs that show it.
 //!
 //! ```text
+//! comparison      two models of one place
 //! edges           kinds of edges, from the facets alone
 //! estimate        a number and its standard deviation
 //! framed          what scale and level of the frame add to standard deviations
@@ -16,6 +17,7 @@
 //! Heights and volumes are above the ground as the building has it; how well the height of the
 //! ground is known is in no standard deviation.
 
+mod comparison;
 mod edges;
 mod estimate;
 mod framed;
@@ -26,6 +28,7 @@ mod straight_sides;
 mod usable;
 mod waste;
 
+pub use comparison::{Compared, Comparison, compare};
 pub use edges::{RoofEdge, RoofEdgeKind, roof_edges};
 pub use estimate::Estimate;
 pub use photographs::views_of_facets;

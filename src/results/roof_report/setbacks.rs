@@ -2,7 +2,8 @@
 //!
 //! A rule file is JSON: `name`, `title`, `source`, `setbacks_m` (metres on the face, by the name of
 //! the kind of edge; none where a kind is not named), `above_slope` (rise per metre up to which
-//! faces are exempt; 0 if not given), `obstruction_m` (around what stands on a face; 0 if not given).
+//! faces are exempt; 0 if not given), `obstruction_m` (around what stands on a face; 0 if not
+//! given).
 
 use std::collections::BTreeMap;
 

@@ -108,7 +108,8 @@ fn blocks_on(scene: &Scene, facet: &Facet, others: &Occluders) -> Vec<Weighed> {
             if nats > by_chance {
                 found.push(weighed(scene, facet, &seen, &block, nats));
             }
-            seen.explain(&block.widened(BORDER_M), &facet.plane);
+            let widened = block.widened(BORDER_M);
+            seen.explain(|seen, view| widened.shade(seen, view, &facet.plane));
         }
     }
     found

@@ -8,7 +8,6 @@
 use glam::Vec3;
 use nalgebra::{Point2, Point3};
 
-use super::block::Block;
 use crate::base::evidence::HidingTable;
 use crate::base::geometry::{Plane, sides, span};
 use crate::base::ids::ViewId;
@@ -124,11 +123,12 @@ impl SeenSurface {
         sum(r1, c1) - sum(r1, c0) - sum(r0, c1) + sum(r0, c0)
     }
 
-    /// Leaves the cells that a block hides out of what is to be explained.
-    pub(super) fn explain(&mut self, block: &Block, plane: &Plane) {
+    /// Leaves the cells that something hides, in each view those of a ring, out of what is to be
+    /// explained.
+    pub(super) fn explain(&mut self, shade: impl Fn(&Self, &SeenFrom) -> Vec<Point2<f64>>) {
         let mut views = std::mem::take(&mut self.views);
         for view in &mut views {
-            let shade = block.shade(self, view, plane);
+            let shade = shade(self, view);
             self.each_row(&shade, |row, from, to| {
                 view.nats[row * self.grid.width + from..row * self.grid.width + to].fill(0.0);
             });

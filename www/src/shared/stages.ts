@@ -133,3 +133,6 @@ export const STAGES = [
   },
 ] as const;
 export type StageName = (typeof STAGES)[number]["name"];
+
+/** Those of a model that is there already. */
+export const STAGES_WITHOUT_VIEWS: readonly StageName[] = ["corrections", "model"];

@@ -30,9 +30,12 @@ interface Task {
 /** The tasks of the pages' main threads that took over half of `MOST_MS`, in order. */
 function tasksOf(trace: Buffer): Task[] {
   const { traceEvents } = JSON.parse(trace.toString()) as { traceEvents: TraceEvent[] };
-  const mains = traceEvents.filter(({ name, args }) => name === "thread_name" && args?.name === "CrRendererMain");
+  const mains = traceEvents.filter(
+    ({ name, args }) => name === "thread_name" && args?.name === "CrRendererMain",
+  );
   const ofMain = traceEvents.filter(
-    ({ pid, tid, tdur = 0 }) => tdur > MOST_MS * 500 && mains.some((main) => main.pid === pid && main.tid === tid),
+    ({ pid, tid, tdur = 0 }) =>
+      tdur > MOST_MS * 500 && mains.some((main) => main.pid === pid && main.tid === tid),
   );
   const first = Math.min(...traceEvents.filter(({ ts }) => ts > 0).map(({ ts }) => ts));
   return ofMain

@@ -53,7 +53,9 @@ test("photographs alone: cameras in space, a scale, epipolar lines, and on into 
   const coverage = report.getByTestId("coverage-plan");
   await expect(coverage.locator("circle")).toHaveCount(photographs.length);
   const shown = coverage.locator("rect title");
-  await expect(shown.filter({ hasText: /^\d+ photographs, from directions up to \d+° apart; a height .* m$/ })).not.toHaveCount(0);
+  await expect(
+    shown.filter({ hasText: /^\d+ photographs, from directions up to \d+° apart; a height .* m$/ }),
+  ).not.toHaveCount(0);
 
   const pair = page.getByTestId("pair-figure");
   const second = pair.locator("canvas").nth(1);

@@ -82,6 +82,7 @@ function facet(indices: number[], plane: typeof SOUTH, probability: number, dens
     lines: [],
     half_planes: [],
     proposals: [{ dense_plane: dense }],
+    obstructions: [],
   };
 }
 

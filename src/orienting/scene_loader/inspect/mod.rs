@@ -14,6 +14,7 @@ use serde::Serialize;
 use super::candidate::OrientationCandidate;
 use super::ground::plan_scene;
 use super::input::LoadOptions;
+use super::known_files::opened_model;
 use crate::orienting::orientation::{FileKind, InputFile};
 use crate::orienting::structure_from_motion::PhotoMetadata;
 
@@ -37,6 +38,8 @@ pub struct Inspection {
     pub warnings: Vec<String>,
     /// Why a run would refuse these files; empty when it would not.
     pub errors: Vec<String>,
+    /// Path of the CityJSON file whose model is opened instead, where there is no photograph.
+    pub model: Option<String>,
     /// Do only the positions of the cameras give reason to refuse them? Then loading checks the
     /// images, and reports more.
     pub is_implausible: bool,
@@ -104,6 +107,8 @@ pub fn inspect_files(files: &[InputFile], options: &LoadOptions) -> Inspection {
             ),
         }
     });
+    let model = opened_model(files).map(|file| file.path.clone());
+    let errors = plan.errors.iter().map(ToString::to_string);
     Inspection {
         files: described.collect(),
         images: images.collect(),
@@ -112,7 +117,8 @@ pub fn inspect_files(files: &[InputFile], options: &LoadOptions) -> Inspection {
         views: plan.views.len(),
         peak_mb: plan.peak_bytes >> 20,
         warnings: [plan.warnings, plan.placement_warnings].concat(),
-        errors: plan.errors.iter().map(ToString::to_string).collect(),
+        errors: errors.filter(|_| model.is_none()).collect(),
+        model,
         is_implausible: plan.is_implausible,
     }
 }

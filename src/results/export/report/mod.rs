@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! read         CityJSON -> model, names, photographs
+//! compared     two models of one place
 //! written      the same of a model, as its CityJSON file has them
 //! reported     these with what was measured, and the files of them
 //! page         the page: HTML with its style and pictures inside
@@ -18,6 +19,7 @@
 //! run wrote into it, byte for byte.
 
 mod axonometric;
+mod compared;
 mod html;
 mod page;
 mod plan;
@@ -29,6 +31,7 @@ mod svg;
 mod tables;
 mod written;
 
+pub use self::compared::ComparedModels;
 pub use self::reported::ReportedModel;
 
 use super::measured::in_frame;

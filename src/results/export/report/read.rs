@@ -30,6 +30,17 @@ impl ReportedModel {
     pub fn read(city_json: &[u8]) -> Result<Self, String> {
         read_model(city_json)
     }
+
+    /// Which of the geometries of an object it is read from: the solid with semantics whose walls
+    /// stand below the eaves (LoD 2.2), else the last one, which is the most detailed.
+    pub(in super::super) fn solid_among(geometries: &[Value]) -> Option<usize> {
+        let is_solid = |g: &Value| g["type"] == "Solid" && g["semantics"]["surfaces"].is_array();
+        let mut solids = (0..geometries.len())
+            .rev()
+            .filter(|&i| is_solid(&geometries[i]));
+        let last = solids.clone().next();
+        solids.find(|&i| geometries[i]["lod"] == "2.2").or(last)
+    }
 }
 
 fn read_model(bytes: &[u8]) -> Result<ReportedModel, String> {
@@ -60,6 +71,7 @@ fn read_model(bytes: &[u8]) -> Result<ReportedModel, String> {
     objects.sort_by_key(|(name, _)| (name.len(), name.as_str()));
     let mut read = ReportedModel {
         origin,
+        step: scale,
         system: system(&file["metadata"]),
         survey: survey(&file["metadata"]),
         ..ReportedModel::default()
@@ -147,13 +159,9 @@ fn frame_sigma(stated: &Value) -> Option<FrameSigma> {
     })
 }
 
-/// The solid with semantics whose walls stand below the eaves (LoD 2.2), else the last one, which
-/// is the most detailed.
 fn solid_of(object: &Value) -> Option<&Value> {
-    let is_solid = |g: &&Value| g["type"] == "Solid" && g["semantics"]["surfaces"].is_array();
-    let mut solids = list(&object["geometry"])?.iter().rev().filter(is_solid);
-    let last = solids.clone().next();
-    solids.find(|g| g["lod"] == "2.2").or(last)
+    let geometries = list(&object["geometry"])?;
+    geometries.get(ReportedModel::solid_among(geometries)?)
 }
 
 fn walls_of(attributes: &Value) -> ReportedWalls {

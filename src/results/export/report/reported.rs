@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use super::super::format::rounded;
 use crate::base::geometry::mean_point;
 use crate::base::math::{atan2, cos};
-use crate::orienting::scene::Survey;
+use crate::orienting::known::Known;
+use crate::orienting::scene::{Scene, Survey};
 use crate::results::roof_report::{BuildingReport, Estimate, FacetReport, SetbackRule};
 use crate::roofs::model::{Building, RoofModel, Solid, SolidFace, Surface};
 
@@ -27,6 +28,8 @@ pub struct ReportedModel {
     pub(super) walls: Vec<ReportedWalls>,
     /// Add it to the model's coordinates for those of the world.
     pub(super) origin: Vector3<f64>,
+    /// Metres in a step of the file's whole numbers, x y z.
+    pub(super) step: Vector3<f64>,
     /// The coordinate system, where the file states it.
     pub(super) system: Option<String>,
     /// The same as far as it leads to a place on the Earth.
@@ -46,6 +49,36 @@ pub(super) struct ReportedWalls {
 }
 
 impl ReportedModel {
+    /// The model.
+    pub fn model(&self) -> &RoofModel {
+        &self.model
+    }
+
+    /// The place of the model, without photographs.
+    pub fn scene(&self) -> Scene {
+        Scene {
+            views: Vec::new(),
+            origin: self.origin,
+            ground_z: None,
+            region: None,
+            known: Known::default(),
+            warnings: Vec::new(),
+            survey: self.survey.clone(),
+        }
+    }
+
+    pub(in super::super) fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    pub(in super::super) fn origin(&self) -> &Vector3<f64> {
+        &self.origin
+    }
+
+    pub(in super::super) fn step(&self) -> &Vector3<f64> {
+        &self.step
+    }
+
     /// Adds a building of faces, whose facets are there, on a ground of this height, else at its
     /// lowest corner; false where it has no roof.
     pub(super) fn add_building(

@@ -3,7 +3,6 @@ import { batch } from "@preact/signals";
 import type { InputFile } from "../../shared/calls";
 import { asTree } from "../../shared/paramTree";
 import type { StageName } from "../../shared/stages";
-import { stagesOf } from "../../stages/catalogue";
 import { counted } from "../parts/counted";
 import { saveFile } from "../parts/saveFile";
 import type { Turn } from "../session/actionQueue";
@@ -33,17 +32,19 @@ import { loadOptions, wishesOf } from "../settings/loadOptions";
 import { changedParams, paramsOf } from "../settings/parameterForm";
 import { keepResult } from "../state/keptResult";
 import { dismissAbout, notify } from "../state/notices";
-import { defaults, method, params, replaceParams } from "../state/parameters";
+import { defaults, params, replaceParams } from "../state/parameters";
 import {
   files,
   hasPhotographsOnly,
   inspection,
+  isModelOnly,
   markAsDemo,
   NO_OPTIONS,
   nameProject,
   type ProjectState,
   presentProject,
   projectName,
+  projectStages,
   type RunOptions,
   replaceFiles,
   replaceRunOptions,
@@ -139,7 +140,7 @@ async function adoptProject(): Promise<void> {
     setInspection(null);
   });
   await tellParams(params.value);
-  replaceStages(stagesOf(method.value));
+  replaceStages(projectStages.value);
   await ensureInspected();
 }
 
@@ -287,7 +288,7 @@ async function restoreIn(turn: Turn, kept: ProjectState, linked = {}): Promise<v
   batch(() => {
     nameProject(kept.name, kept.id);
     replaceParams(paramsOf(defaults.value, { ...changedParams(defaults.value, kept.params), ...linked }));
-    replaceStages(stagesOf(method.value));
+    replaceStages(projectStages.value);
     setProject(kept.files);
     replaceRunOptions({ ...NO_OPTIONS, ...kept.options });
     markAsDemo(kept.isDemo);
@@ -407,6 +408,9 @@ async function loadProject(turn: Turn, adopt?: () => Promise<void>): Promise<voi
   }
   if (problems.length === 0 || !isFinal) {
     await ensureScene();
+    if (isModelOnly.value) {
+      await runEverything(turn);
+    }
     return;
   }
   // What is missing, and how to come by it, fills the page already.

@@ -5,14 +5,13 @@ import { WorkerPool } from "../../core/workerPool";
 import type { Args, CallName, Result } from "../../shared/calls";
 import type { ParamTree } from "../../shared/paramTree";
 import type { SceneInfo } from "../../shared/records";
-import { stagesOf } from "../../stages/catalogue";
 import { flightPlan, showTileFraction, tileRun } from "../project/tiles/flight";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions } from "../settings/loadOptions";
 import { paramsOf } from "../settings/parameterForm";
 import { announce, notify } from "../state/notices";
-import { method, params, replaceParams, setDefaults } from "../state/parameters";
-import { files, inspection, runOptions, setInspection } from "../state/project";
+import { params, replaceParams, setDefaults } from "../state/parameters";
+import { files, inspection, projectStages, runOptions, setInspection } from "../state/project";
 import { results, setExportNames } from "../state/results";
 import { images, scene, setImages, setPeakMb, setScene } from "../state/scene";
 import {
@@ -136,7 +135,7 @@ async function openEngine(): Promise<void> {
     // With what has been chosen while the core was compiled.
     replaceParams(paramsOf(defaults, { ...linkedParams(), ...params.value }));
     await tellParams(params.value);
-    replaceStages(stagesOf(method.value));
+    replaceStages(projectStages.value);
   }
 }
 
@@ -165,6 +164,7 @@ export async function ensureInspected(): Promise<void> {
     const options = loadOptions({ ...runOptions.value, leftOut: [] }, null);
     setInspection(await engine.call("inspect", options));
     held.inspection = true;
+    replaceStages(projectStages.value);
   }
 }
 

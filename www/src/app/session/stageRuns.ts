@@ -2,6 +2,7 @@
 import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
 import type { ParamTree, ParamValue } from "../../shared/paramTree";
+import type { ComparedModels } from "../../shared/records";
 import type { Method, StageName } from "../../shared/stages";
 import {
   firstStageOf,
@@ -9,7 +10,6 @@ import {
   mainTabOf,
   methodOf,
   shownTabOf,
-  stagesOf,
   stageWords,
 } from "../../stages/catalogue";
 import { fetchResults } from "../../stages/list";
@@ -18,7 +18,7 @@ import { changedParams, fieldText, paramName, withParam } from "../settings/para
 import { isBusy } from "../state/activity";
 import { announce, dismissOffers, notify } from "../state/notices";
 import { defaults, method, params, replaceParams } from "../state/parameters";
-import { files, hasPhotographsOnly, runOptions } from "../state/project";
+import { files, hasPhotographsOnly, projectStages, runOptions } from "../state/project";
 import {
   addResults,
   exportNames,
@@ -144,7 +144,7 @@ export function changeParams(
     if (isOtherMethod) {
       // Until the core is compiled there are none.
       if (stages.value.length > 0) {
-        replaceStages(stagesOf(method.value));
+        replaceStages(projectStages.value);
       }
       clearResults();
     } else {
@@ -195,12 +195,7 @@ export async function outputFile(name: string, setbacks?: string): Promise<Uint8
   await actions.perform({ kind: "save", name, phase: "save", words }, async (turn) => {
     // What it waited for may have taken the results away.
     if (exportNames.value.includes(name)) {
-      const last = stages.value.at(-1);
-      // Of an earlier visit the page has what it shows; the same input gives the same files.
-      if (!hasResults() && last !== undefined) {
-        await runEverything(turn);
-        turn.enter("save", words);
-      }
+      await ensureResults(turn, words);
       if (setbacks !== undefined) {
         await engine.call("reportWith", setbacks);
       }
@@ -208,6 +203,26 @@ export async function outputFile(name: string, setbacks?: string): Promise<Uint8
     }
   });
   return bytes;
+}
+
+/** What the model has in common with another one, and by how much they differ; null where something else took its turn. */
+export async function compareModel(other: File): Promise<ComparedModels | null> {
+  const words = `Comparing with ${other.name}`;
+  let found: ComparedModels | null = null;
+  await actions.perform({ kind: "save", name: other.name, phase: "save", words }, async (turn) => {
+    const bytes = new Uint8Array(await other.arrayBuffer());
+    await ensureResults(turn, words);
+    found = await engine.call("compareWith", bytes);
+  });
+  return found;
+}
+
+/** Of an earlier visit the page has what it shows; the same input gives the same results. */
+async function ensureResults(turn: Turn, words: string): Promise<void> {
+  if (!hasResults() && stages.value.length > 0) {
+    await runEverything(turn);
+    turn.enter("save", words);
+  }
 }
 
 async function runStage(name: StageName, position: number, taken: ParamTree): Promise<void> {

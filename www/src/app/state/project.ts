@@ -3,7 +3,9 @@ import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
 import type { InputFile } from "../../shared/calls";
 import type { ParamTree } from "../../shared/paramTree";
 import type { FileKind, Inspection } from "../../shared/records";
-import { params } from "./parameters";
+import { STAGES_WITHOUT_VIEWS } from "../../shared/stages";
+import { stagesOf } from "../../stages/catalogue";
+import { method, params } from "./parameters";
 
 /** What the person asked for beyond the files; images, terrain models and footprints are left out by their path. */
 export interface RunOptions {
@@ -76,6 +78,14 @@ export const hasPhotographsOnly = computed(() => {
   const isHelpless = known.every(({ kind }) => kind === "image" || kind === "ignored");
   return isHelpless && images.length > 0 && images.every(({ orientation }) => orientation === null);
 });
+
+/** Whether the project is a model that is there already, and no photographs. */
+export const isModelOnly = computed(() => inspection.value?.model != null);
+
+/** The stages of the project, in their order. */
+export const projectStages = computed(() =>
+  isModelOnly.value ? STAGES_WITHOUT_VIEWS : stagesOf(method.value),
+);
 
 /** Terrain models and footprints: what is known of the place beforehand. */
 export type KnownKind = Extract<FileKind, "terrain" | "footprints">;

@@ -73,7 +73,8 @@ function Doors() {
         onClick={() => void openDemo()}
       />
       <p class="muted">
-        Files and folders can be dropped anywhere on this page, also as a .zip; or{" "}
+        Files and folders can be dropped anywhere on this page, also as a .zip, and a CityJSON model of your
+        own or of anybody, to be looked at, measured and corrected; or{" "}
         <button type="button" class="link" onClick={openFolder}>
           open a folder
         </button>

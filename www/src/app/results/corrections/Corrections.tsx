@@ -64,7 +64,7 @@ export function Corrections() {
         </span>
       </div>
       <SelectedFacet facets={facets} />
-      <EdgeTool />
+      {(scene.value?.views.length ?? 0) > 0 && <EdgeTool />}
       <Done />
     </section>
   );

@@ -3,6 +3,7 @@ import "./result.css";
 import { facetOf } from "../../../kinds/kinds";
 import { Inspector } from "../../inspector/Inspector";
 import { counted } from "../../parts/counted";
+import { ModelComparison } from "../../results/comparison/ModelComparison";
 import { Corrections } from "../../results/corrections/Corrections";
 import { isCorrecting } from "../../results/corrections/drawn";
 import { mainResults } from "../../state/results";
@@ -26,6 +27,7 @@ function Buildings() {
       <section class="panel">
         <h2>Buildings</h2>
         <p class="muted">The model is joined from tiles: the report and the files list its buildings.</p>
+        <ModelComparison />
       </section>
     );
   }
@@ -50,6 +52,7 @@ function Buildings() {
           <BuildingRow key={building.number} building={building} />
         ))}
       </ul>
+      <ModelComparison />
     </section>
   );
 }

@@ -34,7 +34,11 @@ export function CoveragePlan({ report, centres }: { report: OrientationReport; c
   const unit = report.is_metric ? "m" : "units";
   return (
     <figure class="overlap-plan coverage-plan" data-testid="coverage-plan">
-      <svg viewBox={`0 0 ${SIDE} ${SIDE}`} role="img" aria-label={`Plan of the area: ${report.coverage_words[0] ?? ""}`}>
+      <svg
+        viewBox={`0 0 ${SIDE} ${SIDE}`}
+        role="img"
+        aria-label={`Plan of the area: ${report.coverage_words[0] ?? ""}`}
+      >
         {coverage.cells.map((cell, i) => {
           const [column, row] = [i % coverage.columns, Math.floor(i / coverage.columns)];
           return (
@@ -70,7 +74,9 @@ export function CoveragePlan({ report, centres }: { report: OrientationReport; c
             <i class={name} /> {text} {percentText(coverage.shares[i] ?? 0)}
           </span>
         ))}
-        <span>Dots are the cameras{proposed.length > 0 && ", triangles where another photograph would tell most"}.</span>
+        <span>
+          Dots are the cameras{proposed.length > 0 && ", triangles where another photograph would tell most"}.
+        </span>
       </figcaption>
     </figure>
   );
@@ -78,6 +84,7 @@ export function CoveragePlan({ report, centres }: { report: OrientationReport; c
 
 function cellText({ views, angle_deg, height_sigma }: CoveredCell, unit: string): string {
   const angle = views > 1 ? `, from directions up to ${angle_deg.toFixed(0)}° apart` : "";
-  const height = height_sigma === null ? "" : `; a height from one pixel each ± ${height_sigma.toPrecision(2)} ${unit}`;
+  const height =
+    height_sigma === null ? "" : `; a height from one pixel each ± ${height_sigma.toPrecision(2)} ${unit}`;
   return `${counted(views, "photographs")}${angle}${height}`;
 }
