@@ -191,33 +191,14 @@ impl<'a> Rewriting<'a> {
         sources: &[Option<FacetId>],
         was: Option<usize>,
     ) -> Value {
-        let before = self.read.model();
-        let mut surfaces: Vec<Value> = Vec::new();
-        let (mut boundaries, mut values) = (Vec::new(), Vec::new());
+        let (mut surfaces, mut boundaries, mut values) = (Vec::new(), Vec::new(), Vec::new());
         let vertices: Vec<usize> = (building.solid.vertices.iter())
             .map(|p| self.vertex(p))
             .collect();
         for face in &building.solid.faces {
             let surface = match face.surface {
                 Surface::Roof(facet) => {
-                    let source = sources[facet.index()];
-                    let place = source.zip(was).and_then(|(source, was)| {
-                        let faces = &before.buildings[was].solid.faces;
-                        faces
-                            .iter()
-                            .position(|f| f.surface == Surface::Roof(source))
-                    });
-                    let of = place.map_or(Value::Null, |place| {
-                        let surface = stated["semantics"]["values"][0][place].as_u64();
-                        surface.map_or(Value::Null, |s| {
-                            stated["semantics"]["surfaces"][s as usize].clone()
-                        })
-                    });
-                    let is_as_before = source.is_some_and(|source| {
-                        let own = (&model.facets[facet.index()], &before.facets[source.index()]);
-                        own.0.outer == own.1.outer && own.0.holes == own.1.holes
-                    });
-                    of_shape(of, is_as_before)
+                    self.roof_surface((model, facet), (stated, was), sources[facet.index()])
                 }
                 Surface::Wall => json!({ "type": "WallSurface" }),
                 Surface::Ceiling => json!({ "type": "OuterCeilingSurface" }),
@@ -245,6 +226,28 @@ impl<'a> Rewriting<'a> {
             "boundaries": [boundaries],
             "semantics": { "surfaces": surfaces, "values": [values] },
         })
+    }
+
+    /// What is said of a roof face: what the Solid in whose place it comes says of the one that it
+    /// was.
+    fn roof_surface(
+        &self,
+        (model, facet): (&RoofModel, FacetId),
+        (stated, was): (&Value, Option<usize>),
+        source: Option<FacetId>,
+    ) -> Value {
+        let before = self.read.model();
+        let place = source.zip(was).and_then(|(source, was)| {
+            let mut faces = before.buildings[was].solid.faces.iter();
+            faces.position(|f| f.surface == Surface::Roof(source))
+        });
+        let of = place.and_then(|place| stated["semantics"]["values"][0][place].as_u64());
+        let of = of.map(|surface| stated["semantics"]["surfaces"][surface as usize].clone());
+        let is_as_before = source.is_some_and(|source| {
+            let [now, then] = [&model.facets[facet.index()], &before.facets[source.index()]];
+            now.outer == then.outer && now.holes == then.holes
+        });
+        of_shape(of.unwrap_or_default(), is_as_before)
     }
 
     /// The number of a vertex, in whole steps of the file.

@@ -219,6 +219,7 @@ fn paired<Id: Copy>(
 mod tests {
     use super::super::tests::{gable, hip, roof};
     use super::*;
+    use crate::base::math::atan;
     use crate::roofs::solids::close_buildings;
 
     fn model(facets: Vec<Facet>) -> RoofModel {
@@ -267,7 +268,7 @@ mod tests {
         assert!(building.area_m2.iter().all(|own| (own - area).abs() < 1e-9));
         assert_eq!(found.facets.len(), 2);
         let [slope, other] = found.facets[0].slope_deg.unwrap();
-        assert!((slope - 0.5f64.atan().to_degrees()).abs() < 1e-9 && (slope - other).abs() < 1e-9);
+        assert!((slope - atan(0.5).to_degrees()).abs() < 1e-9 && (slope - other).abs() < 1e-9);
     }
 
     #[test]

@@ -36,9 +36,6 @@ const MOST_PROPOSED: usize = 3;
 /// lens folds what lies far outside of its image over it.
 const SAME_RAY: f64 = 1e-3;
 
-/// Another photograph is taken like one of so many that are nearest to its place.
-const MODELS: usize = 3;
-
 /// The area of a flight, cell by cell.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
@@ -325,7 +322,7 @@ fn proposed(
 }
 
 /// Poses over every second cell of every second row between the cameras, which is near enough to
-/// the best place: as high as a near photograph, and in its direction.
+/// the best place: as high as the nearest photograph, and in its direction.
 fn candidates<'a>(
     model: &'a SparseModel,
     grid: &Grid,
@@ -338,16 +335,13 @@ fn candidates<'a>(
     });
     (cells.map(|cell| grid.middle(cell, 0.0).xy()))
         .filter(|place| flown.contains(place))
-        .flat_map(|place| {
+        .filter_map(|place| {
             let distance = |p: &OrientedPhoto| (p.pose.center.xy() - place).norm_squared();
-            let mut nearest: Vec<&OrientedPhoto> = model.photos.iter().collect();
-            nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-            nearest.truncate(MODELS);
-            nearest.into_iter().map(move |like| {
-                let center = Point3::new(place.x, place.y, like.pose.center.z);
-                let rotation = like.pose.rotation;
-                (like, Pose { rotation, center })
-            })
+            let nearest = (model.photos.iter()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let like = nearest?;
+            let center = Point3::new(place.x, place.y, like.pose.center.z);
+            let rotation = like.pose.rotation;
+            Some((like, Pose { rotation, center }))
         })
         .collect()
 }
@@ -361,9 +355,11 @@ fn ln_sigma(normal: &Matrix3<f64>, depth: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Rotation3, Vector3};
+    use nalgebra::Vector3;
 
     use super::*;
+    use crate::base::geometry::rotation_from_axis_angle;
+    use crate::base::math::atan;
     use crate::orienting::structure_from_motion::output::SparsePoint;
 
     const FOCAL_PX: f64 = 500.0;
@@ -376,7 +372,7 @@ mod tests {
             path: format!("{i}.png"),
             camera: 0,
             pose: Pose {
-                rotation: Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI),
+                rotation: rotation_from_axis_angle(&(Vector3::x() * std::f64::consts::PI)),
                 center: Point3::new(x, y, FLYING_HEIGHT_M),
             },
             rays: Vec::new(),
@@ -438,7 +434,7 @@ mod tests {
         for cell in seen {
             let sigma = cell.height_sigma.unwrap();
             assert!((sigma - expected).abs() < 1e-9, "{sigma} {expected}");
-            assert!(cell.angle_deg < 2.0 * (10.0f64 / FLYING_HEIGHT_M).atan().to_degrees() + 1e-9);
+            assert!(cell.angle_deg < 2.0 * atan(10.0 / FLYING_HEIGHT_M).to_degrees() + 1e-9);
         }
         for cell in coverage
             .cells
