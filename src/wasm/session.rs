@@ -245,7 +245,7 @@ impl Session {
         self.points = None;
         self.run = Some(match opened_model(&self.files) {
             Some(file) => Run::of_model(file.bytes.clone(), self.params.clone())
-                .map_err(|e| named_error("InputError", &format!("{} {e}", file.path)))?,
+                .map_err(|e| named_error("InputError", &format!("{}: {e}", file.path)))?,
             None => {
                 let scene = load_scene(&self.files, &options).map_err(|e| input_error(&e))?;
                 Run::new(scene, self.params.clone())

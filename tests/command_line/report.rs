@@ -59,7 +59,7 @@ fn a_report_is_made_again_and_of_what_is_no_model_it_is_not() {
     }
 }
 
-/// Deletes a building of the model: the rest is as before.
+/// Raises a building of the model, which a comparison then says.
 fn compared_with_itself_and_corrected(scene: &Scene, city: &Path) {
     let run = |arguments: &[&Path]| {
         let command = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
@@ -95,8 +95,9 @@ fn compared_with_itself_and_corrected(scene: &Scene, city: &Path) {
         corners.sum::<f64>() / ring.len() as f64
     });
     let list = scene.0.path().join("corrections.json");
-    let deleted = format!(r#"[{{"correction": "delete_building", "building": [{x}, {y}, {z}]}}]"#);
-    fs::write(&list, deleted).unwrap();
+    let raised =
+        format!(r#"[{{"correction": "set_eave", "building": [{x}, {y}, {z}], "height": {z}}}]"#);
+    fs::write(&list, raised).unwrap();
     let corrected = scene.0.path().join("corrected");
     let output = run(&[
         Path::new("correct"),
@@ -109,11 +110,14 @@ fn compared_with_itself_and_corrected(scene: &Scene, city: &Path) {
     let printed = crate::printed(&output);
     assert!(printed.contains("model.ifc"), "{printed}");
     let text = crate::printed(&run(&[Path::new("compare"), city, &corrected]));
-    let others = buildings.len() - 1;
-    assert!(
-        text.starts_with(&format!(
-            "{others} buildings in both models, 1 in the first alone"
-        )),
-        "{text}"
+    let both = format!(
+        "buildings: {} in both models, 0 in the first alone",
+        buildings.len()
     );
+    assert!(text.starts_with(&both), "{text}");
+    let row = text.lines().find(|line| line.starts_with("building-0"));
+    let above: f64 = (row.and_then(|row| row.split_whitespace().nth_back(1)))
+        .and_then(|above| above.parse().ok())
+        .unwrap_or_else(|| panic!("{text}"));
+    assert!(above < -0.1, "{text}");
 }

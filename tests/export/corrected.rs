@@ -165,7 +165,7 @@ fn what_is_no_single_file_is_not_corrected() {
     for (file, reason) in [
         (&files["model.city.jsonl"][..], "only such a file"),
         (b"{}", "is no CityJSON"),
-        (b"", "is no JSON"),
+        (b"", "is no CityJSON"),
     ] {
         let refused = correct_file(file, &[], &Params::default()).err().unwrap();
         assert!(refused.contains(reason), "{refused}");

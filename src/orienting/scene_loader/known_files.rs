@@ -32,8 +32,8 @@ pub(super) fn kinds_of(files: &[InputFile], options: &LoadOptions) -> Vec<FileKi
     files.iter().map(kind).collect()
 }
 
-/// The CityJSON file whose model is opened, where there are no photographs and no orientation; `None`
-/// also where there are several.
+/// The CityJSON file whose model is opened, where there are no photographs and no orientation;
+/// `None` also where there are several.
 pub fn opened_model(files: &[InputFile]) -> Option<&InputFile> {
     let kinds = kinds_of(files, &LoadOptions::default());
     let mut models = None;

@@ -159,20 +159,25 @@ impl<'a> Rewriting<'a> {
     fn keep_true(&mut self, attributes: Raw<'a>, ground_z: f64) {
         /// The height that a building states of its ground.
         const GROUND: &str = "groundHeight";
-        let ground_m = rounded(ground_z + self.read.origin().z, 4).to_string();
+        let ground_m = rounded(ground_z + self.read.origin().z, 4);
         let Ok(mut members) = serde_json::from_str::<BTreeMap<String, Raw>>(attributes.get())
         else {
             return;
         };
         let before = members.len();
         members.retain(|name, _| !OF_ITS_SHAPE.contains(&&name[..]));
-        let stands_elsewhere = members.get(GROUND).is_some_and(|raw| raw.get() != ground_m);
+        let stands_elsewhere = members
+            .get(GROUND)
+            .is_some_and(|raw| raw.get().parse() != Ok(ground_m));
         if members.len() == before && !stands_elsewhere {
             return;
         }
         let member = |(name, raw): (&String, &Raw)| {
-            let value = if name == GROUND { &ground_m } else { raw.get() };
-            format!("{}:{value}", Value::String(name.clone()))
+            let name_json = json!(name);
+            match name == GROUND && stands_elsewhere {
+                true => format!("{name_json}:{}", json!(ground_m)),
+                false => format!("{name_json}:{}", raw.get()),
+            }
         };
         let kept: Vec<String> = members.iter().map(member).collect();
         let edit = (

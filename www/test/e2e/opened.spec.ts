@@ -12,7 +12,7 @@ test("a CityJSON alone is a model to look at, to correct, to compare and to save
   await page.goto("/");
   await give(page, [upload("houses.city.json", MODEL)]);
   await waitForStage(page, "model");
-  await expect(page.getByTestId("buildings")).toContainText("1 building 1 faces, 100 m²");
+  await expect(page.getByTestId("buildings")).toContainText("1 building 1 face, 100 m²");
   expect(await axeFindings(page)).toEqual([]);
   expect((await save(page, "model.city.json")).equals(MODEL)).toBe(true);
 
@@ -44,5 +44,6 @@ test("what is no model says so, and photographs take the place of a model", asyn
   await give(page, [upload("broken.city.json", Buffer.from('{"type":"CityJSON","CityObjects":{}}'))]);
   await expect(page.getByRole("alert")).toContainText("transform");
   await give(page, houseFiles());
+  await page.getByRole("button", { name: "New project" }).last().click();
   await expect(page.locator(".status.good")).toHaveCount(6);
 });

@@ -169,7 +169,8 @@ impl OrientReport {
         self.block_words() + &self.remarks()
     }
 
-    /// What the photographs show of the area, and where another one would tell most, a sentence each.
+    /// What the photographs show of the area, and where another one would tell most, a sentence
+    /// each.
     pub fn coverage_words(&self) -> Vec<String> {
         (self.coverage.as_ref()).map_or_else(Vec::new, |coverage| coverage.words(self.offset))
     }

@@ -83,7 +83,7 @@ impl ComparedModels {
         });
         let mut above: Vec<f64> = (self.facets.iter().filter_map(|f| f.above_m)).collect();
         let mut text = format!(
-            "{} buildings in both models, {} in the first alone, {} in the second alone; roofs of \
+            "buildings: {} in both models, {} in the first alone, {} in the second alone; roofs of \
              {:.1} and {:.1} m2\n",
             self.buildings.iter().filter(in_both).count(),
             alone(|part| part.first.is_some()),

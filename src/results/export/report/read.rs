@@ -33,7 +33,7 @@ impl ReportedModel {
 
     /// Which of the geometries of an object it is read from: the solid with semantics whose walls
     /// stand below the eaves (LoD 2.2), else the last one, which is the most detailed.
-    pub(in super::super) fn solid_among(geometries: &[Value]) -> Option<usize> {
+    pub(crate) fn solid_among(geometries: &[Value]) -> Option<usize> {
         let is_solid = |g: &Value| g["type"] == "Solid" && g["semantics"]["surfaces"].is_array();
         let mut solids = (0..geometries.len())
             .rev()

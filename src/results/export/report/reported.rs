@@ -67,15 +67,15 @@ impl ReportedModel {
         }
     }
 
-    pub(in super::super) fn names(&self) -> &[String] {
+    pub(crate) fn names(&self) -> &[String] {
         &self.names
     }
 
-    pub(in super::super) fn origin(&self) -> &Vector3<f64> {
+    pub(crate) fn origin(&self) -> &Vector3<f64> {
         &self.origin
     }
 
-    pub(in super::super) fn step(&self) -> &Vector3<f64> {
+    pub(crate) fn step(&self) -> &Vector3<f64> {
         &self.step
     }
 
