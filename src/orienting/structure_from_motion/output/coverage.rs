@@ -461,21 +461,11 @@ mod tests {
 
     #[test]
     fn cells_without_points_lie_between_others() {
-        let some = [
-            Some(1.0),
-            None,
-            Some(3.0),
-            None,
-            None,
-            None,
-            Some(5.0),
-            None,
-            None,
-        ];
-        let filled = between(&some, 3);
-        // In the middle of the first row; nothing on both sides elsewhere.
-        assert_eq!(filled[1], Some(1.0));
-        assert_eq!([filled[3], filled[4], filled[7]], [None; 3]);
+        let [south, west, east, north] = [1.0, 2.0, 3.0, 4.0].map(Some);
+        let some = [None, south, None, west, None, east, None, north, None];
+        let mut filled = some;
+        filled[4] = west;
+        assert_eq!(between(&some, 3), filled);
     }
 
     #[test]
