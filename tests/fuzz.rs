@@ -17,6 +17,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use image::{DynamicImage, ImageFormat};
+use ridgeline::base::params::{Correction, Params};
 use ridgeline::orienting::known::{Register, Terrain, WorldSystem};
 use ridgeline::orienting::orientation::InputFile;
 use ridgeline::orienting::orientation::{detect, epsg_of, orientation_sets, units_of};
@@ -25,7 +26,7 @@ use ridgeline::orienting::scene_loader::{
 };
 use ridgeline::orienting::structure_from_motion::{GeoList, GroundControl, PhotoMetadata};
 use ridgeline::photographs::raster::{image_header, load_image, load_window};
-use ridgeline::results::export::ReportedModel;
+use ridgeline::results::export::{ReportedModel, correct_file};
 use ridgeline::results::roof_report::SetbackRule;
 
 /// Longest time that one input may take: machines may be busy, but nothing hangs.
@@ -395,6 +396,14 @@ fn read_known(files: &[InputFile]) {
     for file in files {
         let read = ReportedModel::read(&file.bytes);
         let _ = read.map(|model| model.files(&SetbackRule::built_in()));
+        let eave = Correction::SetEave {
+            building: nalgebra::Point3::new(432_103.0, 5_412_298.0, 118.0),
+            height: 121.0,
+        };
+        let corrected = correct_file(&file.bytes, &[eave], &Params::default());
+        // What was read once is read again.
+        let again = corrected.map(|file| ReportedModel::read(&file.bytes));
+        assert!(again.is_err() || again.is_ok_and(|read| read.is_ok()));
         let terrain = Terrain::read(file, None, &system, origin, 0.3);
         if let Ok(terrain) = &terrain {
             let z = terrain.z_at(3.0, -2.0);

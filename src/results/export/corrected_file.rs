@@ -252,7 +252,12 @@ impl<'a> Rewriting<'a> {
             let [now, then] = [&model.facets[facet.index()], &before.facets[source.index()]];
             now.outer == then.outer && now.holes == then.holes
         });
-        of_shape(of.unwrap_or_default(), is_as_before)
+        let mut surface = of_shape(of.unwrap_or_default(), is_as_before);
+        // Somebody may have confirmed it.
+        if let Some(probability) = surface.get_mut("probability") {
+            *probability = json!(rounded(model.facets[facet.index()].probability, 4));
+        }
+        surface
     }
 
     /// The number of a vertex, in whole steps of the file.
