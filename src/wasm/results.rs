@@ -259,6 +259,13 @@ impl Session {
         })
     }
 
+    /// How long the sun shines on each facet in the course of a year; null where the place of the
+    /// model on the Earth is not known.
+    #[wasm_bindgen(unchecked_return_type = "Sunshine[] | null")]
+    pub fn sunshine(&self) -> Result<JsValue, JsValue> {
+        to_js(&self.reported()?.sunshine())
+    }
+
     /// Compares the model with that of a CityJSON file: what both have, and by how much it differs.
     #[wasm_bindgen(js_name = compareWith, unchecked_return_type = "ComparedModels")]
     pub fn compare_with(&self, city_json: &[u8]) -> Result<JsValue, JsValue> {

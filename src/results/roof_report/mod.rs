@@ -10,6 +10,7 @@
 //! shape           a building as a function of uncertain numbers, whose errors are propagated
 //! setbacks        rules of what is kept clear along edges
 //! usable          what a rule leaves of a facet
+//! sunshine        how long the sun shines on facets
 //! waste           what is added for cut-offs
 //! photographs     which views show a facet
 //! ```
@@ -25,6 +26,7 @@ mod photographs;
 mod setbacks;
 mod shape;
 mod straight_sides;
+mod sunshine;
 mod usable;
 mod waste;
 
@@ -33,6 +35,7 @@ pub use edges::{RoofEdge, RoofEdgeKind, roof_edges};
 pub use estimate::Estimate;
 pub use photographs::views_of_facets;
 pub use setbacks::SetbackRule;
+pub use sunshine::{Sunshine, sunshine};
 pub use waste::{WasteClass, WasteTable};
 
 use nalgebra::Point3;

@@ -14,6 +14,7 @@ export function modelOfParts(parts: readonly ModelLayer[]): ModelLayer {
     pick: () => null,
     highlight: () => undefined,
     setMode: (mode) => parts.forEach((part) => void part.setMode(mode)),
+    setFacetColours: () => undefined,
     setTheme: (colours) => parts.forEach((part) => void part.setTheme(colours)),
     dispose() {
       for (const part of parts.filter((one) => one.object.parent === object)) {

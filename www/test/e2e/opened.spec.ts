@@ -1,7 +1,7 @@
 /** A model of somebody else: opened without photographs, corrected, compared, and saved with all that was not touched. */
 import { readFileSync } from "node:fs";
 import { expect, test } from "@playwright/test";
-import { axeFindings, give, houseFiles, save, upload, waitForStage, watch } from "./helpers";
+import { axeFindings, give, houseFiles, save, switchLayer, upload, waitForStage, watch } from "./helpers";
 
 const MODEL = readFileSync(new URL("../../../tests/fixtures/known/houses.city.json", import.meta.url));
 /** The middle of its flat roof. */
@@ -15,6 +15,16 @@ test("a CityJSON alone is a model to look at, to correct, to compare and to save
   await expect(page.getByTestId("buildings")).toContainText("1 building 1 face, 100 m²");
   expect(await axeFindings(page)).toEqual([]);
   expect((await save(page, "model.city.json")).equals(MODEL)).toBe(true);
+
+  await switchLayer(page, "Sun");
+  await expect(page.getByTestId("sun-legend")).toContainText("Direct sun a day");
+  await page
+    .getByTestId("buildings")
+    .getByRole("button", { name: /Building/ })
+    .click();
+  await expect(page.getByTestId("sun-legend")).toContainText(
+    /Face 0: 1\d\.\d h; January to December (\d+\.\d, ){11}\d+\.\d h/,
+  );
 
   await page.getByRole("button", { name: "Correct", exact: true }).click();
   const eave = { correction: "set_eave", building: ROOF, height: 120 };

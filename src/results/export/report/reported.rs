@@ -8,7 +8,9 @@ use crate::base::geometry::mean_point;
 use crate::base::math::{atan2, cos};
 use crate::orienting::known::Known;
 use crate::orienting::scene::{Scene, Survey};
-use crate::results::roof_report::{BuildingReport, Estimate, FacetReport, SetbackRule};
+use crate::results::roof_report::{
+    BuildingReport, Estimate, FacetReport, SetbackRule, Sunshine, sunshine,
+};
 use crate::roofs::model::{Building, RoofModel, Solid, SolidFace, Surface};
 
 /// The yield of one kilowatt with the losses that PVGIS proposes, on a building; its documentation
@@ -52,6 +54,23 @@ impl ReportedModel {
     /// The model.
     pub fn model(&self) -> &RoofModel {
         &self.model
+    }
+
+    /// The sun on its facets; `None` where its place on the Earth is not known, and without facets.
+    pub fn sunshine(&self) -> Option<Vec<Sunshine>> {
+        let corners: Vec<_> = self
+            .model
+            .facets
+            .iter()
+            .map(|f| mean_point(&f.outer))
+            .collect();
+        let center = mean_point(corners.get(..).filter(|all| !all.is_empty())?);
+        let [_, latitude] = self.geographic(&center)?;
+        Some(sunshine(
+            &self.model,
+            latitude,
+            self.grid_north_deg(&center),
+        ))
     }
 
     /// The place of the model, without photographs.

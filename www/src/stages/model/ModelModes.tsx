@@ -6,6 +6,9 @@ import { Legend } from "../../app/parts/Legend";
 import { keptResult } from "../../app/state/keptResult";
 import { method } from "../../app/state/parameters";
 import { mainResults } from "../../app/state/results";
+import { foundSunshine } from "../../app/state/sunshine";
+import { selection } from "../../app/state/viewState";
+import { facetOf } from "../../kinds/kinds";
 import { METHOD_COLOURS } from "../../shared/palette";
 import { densePlanesOf, type Facet, rectanglesOf } from "../../shared/records";
 import { METHODS, type Method } from "../../shared/stages";
@@ -21,6 +24,7 @@ const MODES: readonly (readonly [ModelMode, string])[] = [
   ["wireframe", "Wireframe"],
   ["normals", "Normals"],
   ["method", "By method"],
+  ["sun", "Sun"],
 ];
 
 /** The method that proposed a facet's plane; where both ran, both may have. */
@@ -36,6 +40,28 @@ export function facetColours(facets: readonly Facet[] | null, ran: Method): stri
   return (facets ?? []).map((facet) => METHOD_COLOURS[methodOfFacet(facet, ran)]);
 }
 
+/** Colours of no sun, and of twelve hours of it a day. */
+const SUN_SCALE = [
+  [45, 60, 105],
+  [255, 214, 64],
+] as const;
+const MOST_HOURS = 12;
+
+function sunColour(hours: number): string {
+  const share = Math.min(1, hours / MOST_HOURS);
+  const [none, most] = SUN_SCALE;
+  return `rgb(${none.map((from, i) => Math.round(from + share * ((most[i] ?? from) - from))).join()})`;
+}
+
+/** What is known of the sun on the present model; null where nothing is. */
+const sunshine = computed(() =>
+  foundSunshine.value?.of === mainResults.value ? foundSunshine.value.sunshine : null,
+);
+
+export const sunColours = computed(() =>
+  (sunshine.value ?? []).map(({ hours_a_year: hours }) => sunColour(hours / 365)),
+);
+
 export function ModeSwitches() {
   return <Choice legend="Appearance" choices={MODES} of={chosen} />;
 }
@@ -50,6 +76,9 @@ const made = computed(() => {
 export function ModeLegend() {
   if (modelMode.value === "normals") {
     return <Legend entries={[["normals", "hue: azimuth, saturation: slope"]]} />;
+  }
+  if (modelMode.value === "sun") {
+    return <SunLegend />;
   }
   if (modelMode.value !== "method") {
     return null;
@@ -70,5 +99,40 @@ export function ModeLegend() {
         </li>
       )}
     </ul>
+  );
+}
+
+/** Hours of direct sun a day, and those of the selected face by month. */
+function SunLegend() {
+  const all = sunshine.value;
+  if (all === null) {
+    const isAsked = foundSunshine.value?.of !== mainResults.value;
+    return (
+      <p class="legend" role="status" data-testid="sun-legend">
+        {isAsked
+          ? "The sun is being followed through the year…"
+          : "Not known: it needs the place of the model on the Earth. A model of an earlier visit is to be reconstructed again."}
+      </p>
+    );
+  }
+  const picked = all[facetOf(selection.value) ?? -1];
+  return (
+    <div class="legend" data-testid="sun-legend">
+      <ul aria-label="Colours">
+        {[0, 3, 6, 9, MOST_HOURS].map((hours) => (
+          <li key={hours}>
+            <span class="swatch" style={{ background: sunColour(hours) }} aria-hidden="true" /> {hours} h
+          </li>
+        ))}
+      </ul>
+      <p>
+        Direct sun a day, mean of the year: shaded by this model alone, without clouds, trees and hills.
+        {picked === undefined
+          ? " Select a face for its months."
+          : ` Face ${picked.facet}: ${(picked.hours_a_year / 365).toFixed(1)} h; January to December ${picked.hours_a_day
+              .map((hours) => hours.toFixed(1))
+              .join(", ")} h.`}
+      </p>
+    </div>
   );
 }

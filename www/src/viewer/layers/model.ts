@@ -23,10 +23,12 @@ import { disposeObject, type Layer } from "../scene/layer";
 import { SelectedObject } from "../scene/selectedObject";
 import { normalTint } from "./facets";
 
-export type ModelMode = "textured" | "plain" | "wireframe" | "normals" | "method";
+export type ModelMode = "textured" | "plain" | "wireframe" | "normals" | "method" | "sun";
 
 export interface ModelLayer extends Layer {
   setMode(mode: ModelMode): void;
+  /** Colours of facets, for the modes that paint them. */
+  setFacetColours(colours: readonly string[]): void;
   setTheme(colours: ThemeColours): void;
 }
 
@@ -35,11 +37,8 @@ const DIMMED = new Color(0.45, 0.45, 0.45);
 const EDGE_ANGLE_DEG = 2;
 const TASK_MS = 12;
 
-/** `facetColours` are those of the facets by the method that made them. */
-export async function buildModel(
-  glb: Uint8Array<ArrayBuffer>,
-  facetColours: readonly string[],
-): Promise<ModelLayer> {
+/** The model of a GLB file, textured at first. */
+export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLayer> {
   const bytes = glb.buffer.slice(glb.byteOffset, glb.byteOffset + glb.byteLength);
   const { scene } = await new GLTFLoader().parseAsync(bytes, "");
   const object = new Group();
@@ -69,10 +68,16 @@ export async function buildModel(
     polygonOffsetUnits: 1,
   });
   const plain = clay();
-  const painted = new Map([...new Set(facetColours)].map((colour) => [colour, clay(colour)]));
+  const painted = new Map<string, Material>();
+  let facetColours: readonly string[] = [];
   const paintOf = (mesh: Mesh) => {
-    const facet = numberOrNull(extra(mesh, "facet"));
-    return painted.get(facetColours[facet ?? -1] ?? "") ?? plain;
+    const colour = facetColours[numberOrNull(extra(mesh, "facet")) ?? -1];
+    if (colour === undefined) {
+      return plain;
+    }
+    const paint = painted.get(colour) ?? clay(colour);
+    painted.set(colour, paint);
+    return paint;
   };
   const hidden = new MeshBasicMaterial({
     polygonOffset: true,
@@ -104,11 +109,15 @@ export async function buildModel(
         wireframe: () => hidden,
         normals: () => normals,
         method: paintOf,
+        sun: paintOf,
       };
       for (const mesh of meshes) {
         mesh.material = of[mode](mesh);
       }
       edges.visible = mode !== "textured";
+    },
+    setFacetColours(colours: readonly string[]) {
+      facetColours = colours;
     },
     setTheme(colours: ThemeColours) {
       plain.color.set(colours.clay);

@@ -1,16 +1,18 @@
 /** The textured models of the 3D view: the present one, and the kept one beside it. */
 import { computed, type ReadonlySignal, type Signal, signal, useSignalEffect } from "@preact/signals";
 import { THEME_COLOURS } from "../../../shared/palette";
-import { facetColours, modelMode } from "../../../stages/model/ModelModes";
+import { facetColours, modelMode, sunColours } from "../../../stages/model/ModelModes";
 import { buildModel, type ModelLayer } from "../../../viewer/layers/model";
 import { modelOfParts } from "../../../viewer/modelOfParts";
 import { cornersOf, cornersOfFacets } from "../../../viewer/scene/bounds";
 import { unpicked } from "../../../viewer/scene/layer";
 import type { Viewer } from "../../../viewer/viewer";
+import { ask } from "../../session/session";
 import { keptResult } from "../../state/keptResult";
 import { notify } from "../../state/notices";
 import { method } from "../../state/parameters";
 import { mainResults, preliminaryFacets } from "../../state/results";
+import { foundSunshine, setSunshine } from "../../state/sunshine";
 import { theme } from "../../state/theme";
 import { selection, tab } from "../../state/viewState";
 import { isBeside } from "./keptBeside";
@@ -34,24 +36,31 @@ let looksAtPreliminary = false;
 /** Keeps both models, and how they look, as the signals say. */
 export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
   useSignalEffect(() => {
-    void show("model", presentGlb, presentModel, viewer, () =>
-      facetColours(mainResults.peek().facets, method.peek()),
-    );
+    void show("model", presentGlb, presentModel, viewer);
   });
   useSignalEffect(() => {
-    const kept = keptResult.peek();
-    const colours = () => (kept === null ? [] : facetColours(kept.facets, kept.method));
-    void show("keptModel", shownKeptGlb, keptModel, viewer, colours);
+    void show("keptModel", shownKeptGlb, keptModel, viewer);
   });
   useSignalEffect(() => {
     void showTiles(mainResults.value.tileGlbs, viewer);
   });
   useSignalEffect(() => {
+    const kept = keptResult.value;
+    model.value?.setFacetColours(
+      modelMode.value === "sun" ? sunColours.value : facetColours(mainResults.value.facets, method.value),
+    );
+    keptModel.value?.setFacetColours(kept === null ? [] : facetColours(kept.facets, kept.method));
     for (const layer of [model.value, keptModel.value]) {
       layer?.setMode(modelMode.value);
       layer?.setTheme(THEME_COLOURS[theme.value]);
     }
     viewer.value?.draw();
+  });
+  useSignalEffect(() => {
+    const of = mainResults.value;
+    if (modelMode.value === "sun" && of.glb !== null && foundSunshine.value?.of !== of) {
+      void ask("sunshine").then((sunshine) => setSunshine({ of, sunshine }));
+    }
   });
   useSignalEffect(() => {
     if (preliminaryFacets.value !== null) {
@@ -88,7 +97,7 @@ async function showTiles(
   try {
     for (const glb of glbs) {
       if (!tileModels.has(glb)) {
-        tileModels.set(glb, await buildModel(glb, []));
+        tileModels.set(glb, await buildModel(glb));
       }
     }
   } catch (error) {
@@ -110,7 +119,6 @@ async function show(
   glb: ReadonlySignal<Glb>,
   shown: Signal<ModelLayer | null>,
   viewer: ReadonlySignal<Viewer | null>,
-  colours: () => string[],
 ): Promise<void> {
   const bytes = glb.value;
   if (bytes === null && name === "model" && mainResults.peek().tileGlbs.length > 0) {
@@ -122,7 +130,7 @@ async function show(
     return;
   }
   try {
-    const layer = await buildModel(bytes, colours());
+    const layer = await buildModel(bytes);
     if (glb.peek() !== bytes) {
       layer.dispose();
       return;
