@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn a_tower_in_the_south_takes_the_sun_of_noon() {
         let low = flat(0.0, 0.0, 4.0, 3.0);
-        let alone = sunshine(&model(&[low.clone()]), 50.0, 0.0)[0].hours_a_day;
+        let alone = sunshine(&model(std::slice::from_ref(&low)), 50.0, 0.0)[0].hours_a_day;
         let both = model(&[low, flat(-3.0, -12.0, 10.0, 30.0)]);
         let found = sunshine(&both, 50.0, 0.0);
         let shaded = (found.iter())
