@@ -1,9 +1,10 @@
 //! Files of anybody, corrected by hand: what no correction is about keeps its bytes.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 use ridgeline::base::params::{Correction, FacetPlace, Params};
 use ridgeline::results::export::{ReportedModel, correct_file};
 use ridgeline::results::roof_report::SetbackRule;
+use ridgeline::roofs::model::Obstruction;
 use serde_json::Value;
 
 use crate::planted::{ORIGIN, files_of, scene};
@@ -157,6 +158,38 @@ fn what_was_said_of_another_shape_goes_and_the_rest_of_a_model_stays() {
     assert_eq!(roofs.len(), model.facets.len());
     assert!(roofs.iter().all(|roof| roof["probability"].is_number()));
     assert!(roofs.iter().any(|roof| roof["slopeDeg"].is_null()));
+}
+
+#[test]
+fn of_what_stands_on_a_face_the_rest_stays() {
+    let (_, mut model, _) = known_models().remove(0);
+    let box_at = |x: f64| Obstruction {
+        outline: [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+            .map(|(dx, dy)| Point2::new(x + dx, 1.0 + dy))
+            .into(),
+        height_m: 1.25,
+        height_sigma_m: Some(0.5),
+        probability: 0.75,
+    };
+    model.facets[0].obstructions = vec![box_at(2.0), box_at(5.0)];
+    let file = &files_of(&scene(), &model)["model.city.json"];
+    let text = std::str::from_utf8(file).unwrap();
+    let delete = Correction::DeleteObstruction {
+        at: Point3::new(2.5, 1.5, 0.0) + ORIGIN,
+    };
+    let after: Value = serde_json::from_str(&corrected(text, &[delete])).unwrap();
+    let before: Value = serde_json::from_str(text).unwrap();
+    let face = |json: &Value| -> Value {
+        let surfaces = &json["CityObjects"]["building-0"]["geometry"][0]["semantics"]["surfaces"];
+        let all = surfaces.as_array().unwrap();
+        all.iter()
+            .find(|s| s["obstructions"].is_array())
+            .unwrap()
+            .clone()
+    };
+    let (mut expected, found) = (face(&before), face(&after));
+    expected["obstructions"].as_array_mut().unwrap().remove(0);
+    assert_eq!(found, expected);
 }
 
 #[test]

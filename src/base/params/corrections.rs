@@ -47,6 +47,11 @@ pub enum Correction {
         /// A point of its roof.
         building: Point3<f64>,
     },
+    /// Nothing stands there.
+    DeleteObstruction {
+        /// A point of what stands on a facet.
+        at: Point3<f64>,
+    },
     /// A facet is a roof's face.
     Confirm {
         /// The facet.

@@ -372,7 +372,7 @@ fn semantic_surface(
 }
 
 /// What stands on a facet: its outline in plan, in the world frame, and its height.
-fn obstruction_of(scene: &Scene, obstruction: &Obstruction) -> Value {
+pub(super) fn obstruction_of(scene: &Scene, obstruction: &Obstruction) -> Value {
     let outline = (obstruction.outline.iter()).map(|p| [0, 1].map(|k| in_plan(scene, p, k)));
     let mut value = json!({
         "outline": outline.collect::<Value>(),

@@ -8,7 +8,7 @@ use nalgebra::{Point3, Vector3};
 use serde_json::value::RawValue;
 use serde_json::{Value, json};
 
-use super::cityjson::OF_ITS_SHAPE;
+use super::cityjson::{OBSTRUCTIONS, OF_ITS_SHAPE, obstruction_of};
 use super::format::rounded;
 use super::report::ReportedModel;
 use crate::base::ids::FacetId;
@@ -248,14 +248,22 @@ impl<'a> Rewriting<'a> {
         });
         let of = place.and_then(|place| stated["semantics"]["values"][0][place].as_u64());
         let of = of.map(|surface| stated["semantics"]["surfaces"][surface as usize].clone());
-        let is_as_before = source.is_some_and(|source| {
-            let [now, then] = [&model.facets[facet.index()], &before.facets[source.index()]];
-            now.outer == then.outer && now.holes == then.holes
-        });
+        let now = &model.facets[facet.index()];
+        let then = source.map(|source| &before.facets[source.index()]);
+        let is_as_before =
+            then.is_some_and(|then| now.outer == then.outer && now.holes == then.holes);
         let mut surface = of_shape(of.unwrap_or_default(), is_as_before);
+        if then.is_some_and(|then| now.obstructions != then.obstructions) {
+            let scene = self.read.scene();
+            let left = now
+                .obstructions
+                .iter()
+                .map(|one| obstruction_of(&scene, one));
+            surface[OBSTRUCTIONS] = left.collect();
+        }
         // Somebody may have confirmed it.
         if let Some(probability) = surface.get_mut("probability") {
-            *probability = json!(rounded(model.facets[facet.index()].probability, 4));
+            *probability = json!(rounded(now.probability, 4));
         }
         surface
     }
@@ -321,8 +329,15 @@ fn of_shape(mut stated: Value, is_as_before: bool) -> Value {
 fn is_same(model: &RoofModel, building: &Building, before: &RoofModel, was: &Building) -> bool {
     let facets = |model: &RoofModel, of: &Building| -> Vec<_> {
         let own = of.facets.iter().map(|f| &model.facets[f.index()]);
-        own.map(|f| (f.plane, f.outer.clone(), f.holes.clone(), f.probability))
-            .collect()
+        own.map(|f| {
+            (
+                f.plane,
+                f.rings().cloned().collect(),
+                f.probability,
+                f.obstructions.clone(),
+            )
+        })
+        .collect()
     };
     building.solid.vertices == was.solid.vertices
         && building.ground_z == was.ground_z

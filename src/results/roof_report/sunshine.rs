@@ -27,8 +27,8 @@ const HOURS: usize = 24;
 /// Places along each side of a facet's box.
 const PLACES: usize = 5;
 
-/// Something on a ray to the sun as far away as this, metres, is looked for: no roof is higher.
-const FAR_M: f64 = 1e4;
+/// What lies on a ray to the sun is looked for up to this distance, metres: no roof is higher.
+const RAY_LENGTH_M: f64 = 1e4;
 
 /// The sun on a facet, where no cloud, tree or hill is in its way.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -60,7 +60,7 @@ pub fn sunshine(model: &RoofModel, latitude_deg: f64, grid_north_deg: f64) -> Ve
             if facet.plane.normal.dot(sun) <= 0.0 {
                 return 0.0;
             }
-            let is_lit = |p: &&Point3<f64>| !occluders.hide(p, &(**p + sun * FAR_M));
+            let is_lit = |p: &&Point3<f64>| !occluders.hide(p, &(**p + sun * RAY_LENGTH_M));
             places.iter().filter(is_lit).count() as f64 / places.len() as f64
         };
         let hours_a_day = suns

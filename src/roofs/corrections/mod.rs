@@ -94,6 +94,7 @@ fn apply(
     match correction {
         Correction::DeleteFacet { facet, filled } => shape::delete_facet(draft, facet, *filled),
         Correction::DeleteBuilding { building } => shape::delete_building(draft, building),
+        Correction::DeleteObstruction { at } => shape::delete_obstruction(draft, at),
         Correction::Confirm { facet } => {
             let at = draft.facet(facet)?;
             draft.facet_mut(at).probability = 1.0;
@@ -156,7 +157,9 @@ fn in_local_frame(correction: &Correction, origin: &Vector3<f64>) -> Correction 
         | Correction::Confirm { facet }
         | Correction::SetLevel { facet }
         | Correction::SetSlope { facet, .. } => place(facet),
-        Correction::DeleteBuilding { building } => point(building),
+        Correction::DeleteBuilding { building: at } | Correction::DeleteObstruction { at } => {
+            point(at)
+        }
         Correction::SetGround { building, height } | Correction::SetEave { building, height } => {
             point(building);
             *height -= origin.z;

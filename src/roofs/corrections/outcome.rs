@@ -18,6 +18,8 @@ pub enum NotApplied {
     OtherSlope,
     /// No building stands there.
     NoBuilding,
+    /// Nothing stands there.
+    NoObstruction,
     /// No corner lies there.
     NoCorner,
     /// No edge lies there.
@@ -50,6 +52,7 @@ impl NotApplied {
             Self::OtherHeight => "the facet there has another height now",
             Self::OtherSlope => "the facet there has another slope now",
             Self::NoBuilding => "no building stands there any more",
+            Self::NoObstruction => "nothing stands there any more",
             Self::NoCorner => "no corner lies there any more",
             Self::NoEdge => "no edge lies there any more",
             Self::NotNeighbours => "the two are no neighbours in one building",

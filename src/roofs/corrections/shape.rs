@@ -9,7 +9,7 @@ use super::place::corners;
 use crate::base::geometry::{Plane, Polygon, Segment3};
 use crate::base::ids::BuildingId;
 use crate::base::params::FacetPlace;
-use crate::roofs::model::{Facet, is_simple};
+use crate::roofs::model::{Facet, Obstruction, is_simple};
 
 /// Least area of a new facet in plan, m^2. Assumption: a roof window.
 pub(super) const LEAST_AREA_M2: f64 = 0.25;
@@ -43,6 +43,15 @@ pub(super) fn delete_facet(
 pub(super) fn delete_building(draft: &mut Draft, place: &Point3<f64>) -> Result<(), NotApplied> {
     let house = draft.house(place)?;
     draft.houses.remove(house);
+    Ok(())
+}
+
+pub(super) fn delete_obstruction(draft: &mut Draft, at: &Point3<f64>) -> Result<(), NotApplied> {
+    let stands_there = |o: &Obstruction| Polygon::from(o.outline.clone()).contains(&at.xy());
+    let facet = draft.facet_below(&at.xy()).ok_or(NotApplied::NoFacet)?;
+    let all = &mut draft.facet_mut(facet).obstructions;
+    let found = all.iter().position(stands_there);
+    all.remove(found.ok_or(NotApplied::NoObstruction)?);
     Ok(())
 }
 

@@ -16,6 +16,7 @@ export function modelOfParts(parts: readonly ModelLayer[]): ModelLayer {
     setMode: (mode) => parts.forEach((part) => void part.setMode(mode)),
     setFacetColours: () => undefined,
     setTheme: (colours) => parts.forEach((part) => void part.setTheme(colours)),
+    showObstructions: (shows) => parts.forEach((part) => void part.showObstructions(shows)),
     dispose() {
       for (const part of parts.filter((one) => one.object.parent === object)) {
         part.dispose();

@@ -1,7 +1,10 @@
 //! Lists of corrections, ground and buildings, and what is not applied.
 
+use nalgebra::Point2;
+
 use super::*;
 use crate::base::params::corrections_from_json;
+use crate::roofs::model::Obstruction;
 use crate::roofs::testing::uniform;
 
 #[test]
@@ -42,6 +45,39 @@ fn ground_and_eave_are_set_in_the_world() {
         height: ORIGIN[2] + 7.0,
     };
     assert_eq!(why_not(&model, above), NotApplied::Implausible);
+}
+
+#[test]
+fn what_stands_on_a_facet_goes_and_the_facet_stays() {
+    let mut model = truth();
+    let box_at = |x: f64| Obstruction {
+        outline: [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+            .map(|(dx, dy)| Point2::new(x + dx, 1.0 + dy))
+            .into(),
+        height_m: 1.0,
+        height_sigma_m: None,
+        probability: 0.8,
+    };
+    let at = FacetPlace {
+        at: world([0.5, 1.5, 0.0]),
+        ..place(&model, 0.5, 1.5)
+    };
+    let on = (model
+        .facets
+        .iter()
+        .position(|f| f.covers(&Point2::new(0.5, 1.5))))
+    .unwrap();
+    model.facets[on].obstructions = vec![box_at(-2.0), box_at(0.0)];
+    let delete = Correction::DeleteObstruction { at: at.at };
+    let found = mended(&model, &[delete.clone()]);
+    let mut expected = model.clone();
+    expected.facets[on].obstructions.pop();
+    assert_eq!(found, expected);
+    assert_eq!(why_not(&found, delete), NotApplied::NoObstruction);
+    let beside = Correction::DeleteObstruction {
+        at: world([100.0, 0.0, 0.0]),
+    };
+    assert_eq!(why_not(&model, beside), NotApplied::NoFacet);
 }
 
 #[test]

@@ -1,4 +1,5 @@
 /** A facet of the model (B99 4.3). */
+import { obstructionText } from "../../app/parts/obstructionText";
 import { refinementWords } from "../../app/parts/reasonText";
 import { type Facet, isMadeFrom } from "../../shared/records";
 import { slopedArea } from "../../shared/surfaceClass";
@@ -30,6 +31,7 @@ export default {
       ["Similarity", facet.similarity.toFixed(3)],
       ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
       probabilityRow(facet.probability),
+      ...facet.obstructions.map((one, i): Row => [`Obstruction ${i + 1}`, obstructionText(one)]),
       links("3D lines", "line", lines),
       groups.length > 0 && links("Groups", "group", groups),
       refinedRow(index, results),

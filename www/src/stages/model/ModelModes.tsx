@@ -18,6 +18,9 @@ import { METHOD_WORDS } from "../catalogue";
 const chosen = signal<ModelMode>("textured");
 export const modelMode: ReadonlySignal<ModelMode> = chosen;
 
+const shown = signal(true);
+export const showsObstructions: ReadonlySignal<boolean> = shown;
+
 const MODES: readonly (readonly [ModelMode, string])[] = [
   ["textured", "Textured"],
   ["plain", "Plain"],
@@ -63,7 +66,24 @@ export const sunColours = computed(() =>
 );
 
 export function ModeSwitches() {
-  return <Choice legend="Appearance" choices={MODES} of={chosen} />;
+  const count = (mainResults.value.facets ?? []).reduce((sum, facet) => sum + facet.obstructions.length, 0);
+  return (
+    <>
+      <Choice legend="Appearance" choices={MODES} of={chosen} />
+      {count > 0 && (
+        <button
+          type="button"
+          aria-pressed={shown.value}
+          title="What stands on the roofs"
+          onClick={() => {
+            shown.value = !shown.value;
+          }}
+        >
+          Obstructions ({count})
+        </button>
+      )}
+    </>
+  );
 }
 
 /** The numbers of facets that each method made. */

@@ -30,6 +30,8 @@ export interface ModelLayer extends Layer {
   /** Colours of facets, for the modes that paint them. */
   setFacetColours(colours: readonly string[]): void;
   setTheme(colours: ThemeColours): void;
+  /** Whether what stands on the roofs is there. */
+  showObstructions(shows: boolean): void;
 }
 
 const DIMMED = new Color(0.45, 0.45, 0.45);
@@ -51,7 +53,8 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
   });
   const textured = new Map(meshes.map((mesh) => [mesh, mesh.material as Material]));
   // What stands on roofs has no photograph: a dark one's material needs no program of its own.
-  for (const mesh of meshes.filter((mesh) => extra(mesh, "surface") === "obstruction")) {
+  const standing = meshes.filter((mesh) => extra(mesh, "surface") === "obstruction");
+  for (const mesh of standing) {
     const dark = (textured.get(meshes[0] as Mesh) as MeshBasicMaterial).clone();
     dark.color.multiplyScalar(0.4);
     textured.get(mesh)?.dispose();
@@ -115,6 +118,11 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
         mesh.material = of[mode](mesh);
       }
       edges.visible = mode !== "textured";
+    },
+    showObstructions(shows: boolean) {
+      for (const mesh of standing) {
+        mesh.visible = shows;
+      }
     },
     setFacetColours(colours: readonly string[]) {
       facetColours = colours;

@@ -8,6 +8,7 @@ import type { Correction, Facet, NotApplied, Vec3 } from "../../../shared/record
 import { pickedIndex } from "../../../shared/selection";
 import { counted } from "../../parts/counted";
 import { degreesOf, slopeOf } from "../../parts/numberText";
+import { obstructionText } from "../../parts/obstructionText";
 import { saveFile } from "../../parts/saveFile";
 import { parseNumber, TextField } from "../../parts/TextField";
 import { redo, undo } from "../../project/projectActions";
@@ -212,11 +213,32 @@ function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
       {armed.value !== null && (
         <p role="status">Click the other facet. The slope of this one stays where the two are merged.</p>
       )}
+      <Obstructions facet={facet} />
       <Numbers facet={facet} place={place.at} />
       <Corners facet={facet} />
       <Parallel key={index} facet={facet} />
       <Drawn facets={facets} index={index} />
     </fieldset>
+  );
+}
+
+/** What stands on the facet, each to be taken away. */
+function Obstructions({ facet: { obstructions } }: { facet: Facet }) {
+  const remove = (outline: readonly (readonly [number, number])[]) => () => {
+    const middle = (axis: 0 | 1) => outline.reduce((sum, p) => sum + p[axis], 0) / outline.length;
+    const at = worldOf([middle(0), middle(1), 0]);
+    void correct({ correction: "delete_obstruction", at }, at);
+  };
+  return (
+    obstructions.length > 0 && (
+      <div class="row wrap">
+        {obstructions.map((one, i) => (
+          <button key={String(one.outline[0])} type="button" onClick={remove(one.outline)}>
+            Delete obstruction {i + 1} ({obstructionText(one)})
+          </button>
+        ))}
+      </div>
+    )
   );
 }
 

@@ -4,6 +4,7 @@ import type { Correction, NotApplied } from "../../../shared/records";
 const KINDS: Record<Correction["correction"], string> = {
   delete_facet: "Facet deleted",
   delete_building: "Building deleted",
+  delete_obstruction: "Obstruction deleted",
   confirm: "Facet confirmed",
   move_corner: "Corner moved",
   move_edge: "Edge moved",
@@ -49,6 +50,7 @@ export const NOT_APPLIED_WORDS: Record<NotApplied, string> = {
   other_height: "the facet there has another height now",
   other_slope: "the facet there has another slope now",
   no_building: "no building stands there any more",
+  no_obstruction: "nothing stands there any more",
   no_corner: "no corner lies there any more",
   no_edge: "no edge lies there any more",
   not_neighbours: "the two are no neighbours in one building",

@@ -1,7 +1,7 @@
 /** The textured models of the 3D view: the present one, and the kept one beside it. */
 import { computed, type ReadonlySignal, type Signal, signal, useSignalEffect } from "@preact/signals";
 import { THEME_COLOURS } from "../../../shared/palette";
-import { facetColours, modelMode, sunColours } from "../../../stages/model/ModelModes";
+import { facetColours, modelMode, showsObstructions, sunColours } from "../../../stages/model/ModelModes";
 import { buildModel, type ModelLayer } from "../../../viewer/layers/model";
 import { modelOfParts } from "../../../viewer/modelOfParts";
 import { cornersOf, cornersOfFacets } from "../../../viewer/scene/bounds";
@@ -52,6 +52,7 @@ export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
     keptModel.value?.setFacetColours(kept === null ? [] : facetColours(kept.facets, kept.method));
     for (const layer of [model.value, keptModel.value]) {
       layer?.setMode(modelMode.value);
+      layer?.showObstructions(showsObstructions.value);
       layer?.setTheme(THEME_COLOURS[theme.value]);
     }
     viewer.value?.draw();
