@@ -332,7 +332,7 @@ fn is_same(model: &RoofModel, building: &Building, before: &RoofModel, was: &Bui
         own.map(|f| {
             (
                 f.plane,
-                f.rings().cloned().collect(),
+                f.rings().cloned().collect::<Vec<_>>(),
                 f.probability,
                 f.obstructions.clone(),
             )

@@ -69,7 +69,7 @@ fn what_stands_on_a_facet_goes_and_the_facet_stays() {
     .unwrap();
     model.facets[on].obstructions = vec![box_at(-2.0), box_at(0.0)];
     let delete = Correction::DeleteObstruction { at: at.at };
-    let found = mended(&model, &[delete.clone()]);
+    let found = mended(&model, std::slice::from_ref(&delete));
     let mut expected = model.clone();
     expected.facets[on].obstructions.pop();
     assert_eq!(found, expected);
