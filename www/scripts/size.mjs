@@ -10,12 +10,12 @@ import { join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 
-const MOST_WASM = 1_820_000;
-const MOST_IN_ALL = 2_150_000;
+const MOST_WASM = 1_860_000;
+const MOST_IN_ALL = 2_190_000;
 // Of the lessons, as static hosts serve them.
 const MOST_LESSONS = 80_000;
 // Of the second module alone, as the larger of two compressions.
-const MOST_SECOND_WASM = 620_000;
+const MOST_SECOND_WASM = 640_000;
 const ON_DEMAND = /(^|\/)(orientation|lessons|exercises)[^/]*$/i;
 
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));

@@ -8,6 +8,7 @@ import type { GroundTexture, WarpedPicture } from "../../src/shared/calls";
 import type { ParamTree } from "../../src/shared/paramTree";
 import type {
   AdjacencyGraphs,
+  ComparedModels,
   CoplanarSets,
   Correspondence,
   DensePlane,
@@ -30,6 +31,7 @@ import type {
   SideRecord,
   SideTrace,
   StageSummary,
+  Sunshine,
   TileReport,
   WorkPlan,
 } from "../../src/shared/records";
@@ -191,6 +193,7 @@ export class Session implements CoreSession {
       peak_mb: 54,
       warnings: [],
       is_implausible: false,
+      model: null,
       errors: images.length < 3 ? ["fewer than three views; add photographs"] : [],
     };
   }
@@ -532,6 +535,14 @@ export class Session implements CoreSession {
   }
 
   reportWith(): void {}
+
+  compareWith(): ComparedModels {
+    return { buildings: [], facets: [] };
+  }
+
+  sunshine(): Sunshine[] | null {
+    return null;
+  }
 
   exportNames(): string[] {
     return ["model.glb", "report.json"];

@@ -2,12 +2,13 @@
 //! different directions, how exact a height follows, and from where another photograph would tell
 //! most.
 
+use std::f64::consts::{PI, TAU};
+
 use nalgebra::{Matrix3, Point2, Point3};
 use serde::Serialize;
 
 use super::sparse_model::{OrientedPhoto, SparseModel};
-use crate::base::geometry::{Polygon, convex_hull};
-use crate::base::math::{ln, median};
+use crate::base::math::{atan2, ln, median};
 use crate::orienting::orientation::Anchor;
 use crate::orienting::structure_from_motion::block::Pose;
 use crate::orienting::structure_from_motion::intrinsics::Intrinsics;
@@ -277,13 +278,12 @@ fn proposed(
     anchor: Option<&Anchor>,
 ) -> Vec<ProposedPhoto> {
     let centers: Vec<Point2<f64>> = model.photos.iter().map(|p| p.pose.center.xy()).collect();
-    let flown = Polygon::from(convex_hull(&centers));
-    seen.retain(|s| flown.contains(&s.place.xy()));
+    seen.retain(|s| is_between(&centers, &s.place.xy()));
     let mut heights: Vec<f64> = seen.iter().map(|s| s.place.z).collect();
     let Some(ground) = median(&mut heights) else {
         return Vec::new();
     };
-    let candidates = candidates(model, grid, &flown);
+    let candidates = candidates(model, grid, &centers);
     let mut proposed = Vec::new();
     while proposed.len() < MOST_PROPOSED {
         let gain = |(like, pose): &(&OrientedPhoto, Pose)| -> f64 {
@@ -321,12 +321,25 @@ fn proposed(
     proposed
 }
 
+/// Does a place lie in the convex hull of others: are they on no side of it alone?
+fn is_between(others: &[Point2<f64>], place: &Point2<f64>) -> bool {
+    let direction = |p: &Point2<f64>| atan2(p.y - place.y, p.x - place.x);
+    let mut directions: Vec<f64> = others.iter().map(direction).collect();
+    directions.sort_by(f64::total_cmp);
+    let (Some(first), Some(last)) = (directions.first(), directions.last()) else {
+        return false;
+    };
+    let around = TAU - (last - first);
+    let gaps = directions.windows(2).map(|pair| pair[1] - pair[0]);
+    gaps.fold(around, f64::max) < PI
+}
+
 /// Poses over every second cell of every second row between the cameras, which is near enough to
 /// the best place: as high as the nearest photograph, and in its direction.
 fn candidates<'a>(
     model: &'a SparseModel,
     grid: &Grid,
-    flown: &Polygon,
+    centers: &[Point2<f64>],
 ) -> Vec<(&'a OrientedPhoto, Pose)> {
     let rows = grid.heights.len() / grid.columns;
     let cells = (0..rows).step_by(2).flat_map(|row| {
@@ -334,7 +347,7 @@ fn candidates<'a>(
         columns.map(move |column| row * grid.columns + column)
     });
     (cells.map(|cell| grid.middle(cell, 0.0).xy()))
-        .filter(|place| flown.contains(place))
+        .filter(|place| is_between(centers, place))
         .filter_map(|place| {
             let distance = |p: &OrientedPhoto| (p.pose.center.xy() - place).norm_squared();
             let nearest = (model.photos.iter()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -466,6 +479,19 @@ mod tests {
         let mut filled = some;
         filled[4] = west;
         assert_eq!(between(&some, 3), filled);
+    }
+
+    #[test]
+    fn a_place_is_between_others_on_all_sides() {
+        let corners = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]].map(Point2::from);
+        for (x, y, expected) in [(1.0, 1.0, true), (3.0, 3.0, false), (-0.1, 2.0, false)] {
+            assert_eq!(
+                is_between(&corners, &Point2::new(x, y)),
+                expected,
+                "{x} {y}"
+            );
+        }
+        assert!(!is_between(&[], &corners[0]) && !is_between(&corners[..1], &corners[1]));
     }
 
     #[test]

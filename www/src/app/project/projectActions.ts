@@ -278,7 +278,8 @@ export async function restoreWithResults(turn: Turn, kept: ProjectState, linked 
   await restoreIn(turn, kept, linked);
   const found = await readStoredResults();
   turn.signal.throwIfAborted();
-  if (found !== null && (scene.value !== null || runOptions.value.tileM !== null)) {
+  // A model that is there already has been taken up anew.
+  if (found !== null && !isModelOnly.value && (scene.value !== null || runOptions.value.tileM !== null)) {
     showStoredResults(found);
   }
 }

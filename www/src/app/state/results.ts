@@ -1,6 +1,6 @@
 /** What the stages have found. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
-import type { Facet } from "../../shared/records";
+import type { Facet, Sunshine } from "../../shared/records";
 import { REGION_TABS } from "../../stages/catalogue";
 import type { Tab } from "../../stages/list";
 import { NO_RESULTS, type Results } from "../../stages/list";
@@ -62,4 +62,19 @@ export function setExportNames(names: string[]): void {
 
 function resultSetOf(name: Tab): ResultSet {
   return method.value === "combined" && REGION_TABS.includes(name) ? "regions" : "main";
+}
+
+/** How long the sun shines on each face, once somebody wants to see it. */
+interface FoundSunshine {
+  /** The results that it belongs to. */
+  of: object;
+  /** Null where it cannot be known. */
+  sunshine: readonly Sunshine[] | null;
+}
+
+const sun = signal<FoundSunshine | null>(null);
+export const foundSunshine: ReadonlySignal<FoundSunshine | null> = sun;
+
+export function setSunshine(found: FoundSunshine): void {
+  sun.value = found;
 }

@@ -1,11 +1,11 @@
 /** A facet of the model (B99 4.3). */
-import { obstructionText } from "../../app/parts/obstructionText";
 import { refinementWords } from "../../app/parts/reasonText";
 import { type Facet, isMadeFrom } from "../../shared/records";
 import { slopedArea } from "../../shared/surfaceClass";
 import type { Results } from "../../stages/list";
 import { probabilityRow } from "../parts/evidenceRows";
 import type { Kind } from "../parts/kind";
+import { obstructionText } from "../parts/obstructionText";
 import { buildingOfFacet } from "../parts/refinedBuildings";
 import { azimuthText, indicesOf, links, linkTo, numbered, type Row, slopeText } from "../parts/rows";
 import { facetShape } from "../parts/shapes";
@@ -19,7 +19,7 @@ export default {
       return [];
     }
     const [nx, ny] = facet.plane.normal;
-    const { lines = [], half_planes = [], uncertainty } = facet;
+    const { lines = [], half_planes = [], obstructions = [], uncertainty } = facet;
     const groups = indicesOf(results.grouping?.groups, (group) => isMadeFrom(facet, group));
     return [
       ["Building", String(facet.building)],
@@ -31,7 +31,7 @@ export default {
       ["Similarity", facet.similarity.toFixed(3)],
       ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
       probabilityRow(facet.probability),
-      ...facet.obstructions.map((one, i): Row => [`Obstruction ${i + 1}`, obstructionText(one)]),
+      ...obstructions.map((one, i): Row => [`Obstruction ${i + 1}`, obstructionText(one)]),
       links("3D lines", "line", lines),
       groups.length > 0 && links("Groups", "group", groups),
       refinedRow(index, results),

@@ -11,8 +11,8 @@ import { ask } from "../../session/session";
 import { keptResult } from "../../state/keptResult";
 import { notify } from "../../state/notices";
 import { method } from "../../state/parameters";
-import { mainResults, preliminaryFacets } from "../../state/results";
-import { foundSunshine, setSunshine } from "../../state/sunshine";
+import { foundSunshine, mainResults, preliminaryFacets, setSunshine } from "../../state/results";
+
 import { theme } from "../../state/theme";
 import { selection, tab } from "../../state/viewState";
 import { isBeside } from "./keptBeside";
