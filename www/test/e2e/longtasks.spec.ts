@@ -59,7 +59,7 @@ test("nothing holds the page up while the pipeline runs", { tag: "@alone" }, asy
   });
   await page.goto("/");
   await openDemo(page);
-  await expect(stage(page, "load")).toHaveAttribute("data-status", /running|done/);
+  await expect(stage(page, "segments")).toHaveAttribute("data-status", /running|done/);
   await browser.startTracing(page, { categories: ["toplevel", "devtools.timeline"] });
   await waitForStage(page, "model");
   const tasks = tasksOf(await browser.stopTracing());
