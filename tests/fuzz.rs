@@ -26,8 +26,9 @@ use ridgeline::orienting::scene_loader::{
 };
 use ridgeline::orienting::structure_from_motion::{GeoList, GroundControl, PhotoMetadata};
 use ridgeline::photographs::raster::{image_header, load_image, load_window};
-use ridgeline::results::export::{ReportedModel, correct_file};
+use ridgeline::results::export::{ReportedModel, corrected_file};
 use ridgeline::results::roof_report::SetbackRule;
+use ridgeline::roofs::corrections::correct;
 
 /// Longest time that one input may take: machines may be busy, but nothing hangs.
 const SLOWEST: Duration = Duration::from_secs(60);
@@ -394,16 +395,18 @@ fn read_known(files: &[InputFile]) {
     };
     let origin = nalgebra::Vector3::new(432_100.0, 5_412_300.0, 0.0);
     for file in files {
-        let read = ReportedModel::read(&file.bytes);
-        let _ = read.map(|model| model.files(&SetbackRule::built_in()));
         let eave = Correction::SetEave {
             building: nalgebra::Point3::new(432_103.0, 5_412_298.0, 118.0),
             height: 121.0,
         };
-        let corrected = correct_file(&file.bytes, &[eave], &Params::default());
-        // What was read once is read again.
-        let again = corrected.map(|file| ReportedModel::read(&file.bytes));
-        assert!(again.is_err() || again.is_ok_and(|read| read.is_ok()));
+        if let Ok(read) = ReportedModel::read(&file.bytes) {
+            let (model, trace) = correct(&read.scene(), read.model(), &[eave], &Params::default());
+            // What was read once is read again.
+            let corrected = corrected_file(&file.bytes, &model, &trace.sources);
+            let again = corrected.map(|bytes| ReportedModel::read(&bytes));
+            assert!(again.is_err() || again.is_ok_and(|read| read.is_ok()));
+            read.files(&SetbackRule::built_in());
+        }
         let terrain = Terrain::read(file, None, &system, origin, 0.3);
         if let Ok(terrain) = &terrain {
             let z = terrain.z_at(3.0, -2.0);

@@ -49,7 +49,7 @@ use crate::planes::half_planes::HalfPlane;
 use crate::planes::objectspace::{image_segments, world_lines};
 use crate::planes::terrain::Ground;
 use crate::results::export;
-use crate::results::export::{ReportedModel, correct_file, export_all};
+use crate::results::export::{ReportedModel, corrected_file, export_all};
 use crate::results::texture::TexturedModel;
 use crate::roofs::buildings::{OtherGround, RefinementTrace, other_ground};
 use crate::roofs::model::{BuildingWalls, RoofModel};
@@ -352,11 +352,12 @@ impl Run {
             textured: outputs.textured,
         };
         let mut files = export_all(&borrowed, &self.params.texture);
-        if let Some(opened) = &self.opened {
+        if let (Some(opened), Some(corrected)) = (&self.opened, &self.results.corrections) {
             files.retain(|(name, _)| !OF_PHOTOGRAPHS.contains(&&name[..]));
             // One that holds a building a line is written as one object.
-            if let Ok(corrected) = correct_file(opened, &self.params.corrections, &self.params) {
-                files[0].1 = corrected.bytes;
+            let sources = &corrected.trace.sources;
+            if let Ok(bytes) = corrected_file(opened, &corrected.value, sources) {
+                files[0].1 = bytes;
             }
         }
         let known = report::KnownReport {

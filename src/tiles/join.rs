@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::atlases::AtlasPlaces;
 use super::fields;
-use super::model_parts::{append, middle, moved, moved_plane, walls_of};
+use super::model_parts::{append, middle, walls_of};
 use super::tile::Cell;
 use crate::base::evidence::Candidates;
 use crate::base::geometry::{Polygon, Segment2};
@@ -361,7 +361,7 @@ fn join_lines(
                 .iter()
                 .map(|v| part.views[v.index()].0)
                 .collect();
-            let plane = moved_plane(&half_plane.plane, &by);
+            let plane = half_plane.plane.relative_to(&by);
             joined.half_planes.push(HalfPlane {
                 line,
                 views,
@@ -388,7 +388,7 @@ fn join_buildings(
     (reduction, [left, top]): (u32, [u32; 2]),
     joined: &mut Joined,
 ) {
-    let mut model = moved(part.model.clone(), &(joined.scene.origin - part.origin));
+    let mut model = (part.model.clone()).relative_to(&(joined.scene.origin - part.origin));
     for facet in &mut model.facets {
         facet.lines = facet
             .lines

@@ -2,7 +2,6 @@
 
 use nalgebra::{Point2, Vector3};
 
-use crate::base::geometry::Plane;
 use crate::base::ids::{BuildingId, FacetId};
 use crate::roofs::model::{Building, BuildingWalls, RoofModel, Solid, Surface};
 
@@ -72,37 +71,6 @@ pub(super) fn walls_of(
     walls
 }
 
-/// Moves a model to a frame whose origin lies `by` further.
-pub(super) fn moved(mut model: RoofModel, by: &Vector3<f64>) -> RoofModel {
-    for facet in &mut model.facets {
-        facet
-            .outer
-            .iter_mut()
-            .chain(facet.holes.iter_mut().flatten())
-            .for_each(|p| *p -= by);
-        facet.plane = moved_plane(&facet.plane, by);
-        let standing = facet.obstructions.iter_mut();
-        standing.for_each(|o| o.outline.iter_mut().for_each(|p| *p -= by.xy()));
-        if let Some(known) = &mut facet.uncertainty {
-            known.corners.iter_mut().for_each(|corner| corner.at -= by);
-            let ends = known.sides.iter_mut().flat_map(|side| &mut side.ends);
-            ends.for_each(|p| *p -= by.xy());
-        }
-    }
-    for building in &mut model.buildings {
-        building.solid.vertices.iter_mut().for_each(|p| *p -= by);
-        building.ground_z -= by.z;
-    }
-    model
-}
-
-pub(super) fn moved_plane(plane: &Plane, by: &Vector3<f64>) -> Plane {
-    Plane {
-        normal: plane.normal,
-        d: plane.d + plane.normal.dot(by),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::{Point3, center};
@@ -138,7 +106,7 @@ mod tests {
             height_sigma_m: None,
             probability: 1.0,
         });
-        let model = moved(model, &Vector3::new(100.0, -50.0, 7.0));
+        let model = model.relative_to(&Vector3::new(100.0, -50.0, 7.0));
         let facet = &model.facets[0];
         let known = facet.uncertainty.as_ref().unwrap();
         for (corner, [p, q]) in facet.outer.iter().zip(facet.plan().sides()) {

@@ -2,7 +2,8 @@
 
 use nalgebra::{Point2, Point3, Vector3};
 use ridgeline::base::params::{Correction, FacetPlace, Params};
-use ridgeline::results::export::{ReportedModel, correct_file};
+use ridgeline::pipeline::Run;
+use ridgeline::results::export::ReportedModel;
 use ridgeline::results::roof_report::SetbackRule;
 use ridgeline::roofs::model::Obstruction;
 use serde_json::Value;
@@ -34,9 +35,18 @@ const FOREIGN: &str = r#"{
 "#;
 
 fn corrected(text: &str, corrections: &[Correction]) -> String {
-    let found = correct_file(text.as_bytes(), corrections, &Params::default()).unwrap();
-    assert_eq!(found.trace.outcomes, vec![None; corrections.len()]);
-    String::from_utf8(found.bytes).unwrap()
+    let params = Params {
+        corrections: corrections.to_vec(),
+        ..Params::default()
+    };
+    let mut run = Run::of_model(text.into(), params).unwrap();
+    run.run_all();
+    let trace = &run.results().corrections.as_ref().unwrap().trace;
+    assert_eq!(trace.outcomes, vec![None; corrections.len()]);
+    let (_, bytes) = (run.files(&[]).into_iter())
+        .find(|(name, _)| name == "model.city.json")
+        .unwrap();
+    String::from_utf8(bytes).unwrap()
 }
 
 fn in_world([x, y, z]: [f64; 3]) -> Point3<f64> {
@@ -193,14 +203,19 @@ fn of_what_stands_on_a_face_the_rest_stays() {
 }
 
 #[test]
-fn what_is_no_single_file_is_not_corrected() {
+fn what_holds_a_building_a_line_is_written_anew_and_what_is_no_model_is_refused() {
     let files = files_of(&scene(), &known_models().remove(0).1);
-    for (file, reason) in [
-        (&files["model.city.jsonl"][..], "only such a file"),
-        (b"{}", "is no CityJSON"),
-        (b"", "is no CityJSON"),
-    ] {
-        let refused = correct_file(file, &[], &Params::default()).err().unwrap();
-        assert!(refused.contains(reason), "{refused}");
+    let lines = std::str::from_utf8(&files["model.city.jsonl"]).unwrap();
+    let again = corrected(lines, &[]);
+    let names = |text: &str| -> Vec<String> {
+        let roofs = numbers(text);
+        let all = roofs["buildings"].as_array().unwrap().iter();
+        all.map(|b| b["name"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    assert_eq!(names(&again), names(lines));
+    for file in [&b"{}"[..], b""] {
+        let refused = Run::of_model(file.to_vec(), Params::default());
+        assert!(refused.err().unwrap().contains("is no CityJSON"));
     }
 }

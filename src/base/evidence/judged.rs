@@ -111,10 +111,7 @@ impl Candidates {
         let facet = |facet: &JudgedFacet| JudgedFacet {
             outline: ring(&facet.outline),
             holes: facet.holes.iter().map(ring).collect(),
-            plane: Plane {
-                d: facet.plane.d + facet.plane.normal.dot(by),
-                ..facet.plane
-            },
+            plane: facet.plane.relative_to(by),
             ..facet.clone()
         };
         let lines_of = |lines: &[JudgedLine]| -> Vec<JudgedLine> {

@@ -198,6 +198,14 @@ impl Plane {
         }
     }
 
+    /// The same plane in a frame whose origin lies `by` further, metres.
+    pub fn relative_to(&self, by: &Vector3<f64>) -> Self {
+        Self {
+            normal: self.normal,
+            d: self.d + self.normal.dot(by),
+        }
+    }
+
     /// The plane through `point` with this normal (any length but zero); `None` for a zero normal.
     pub fn from_point_normal(point: &Point3<f64>, normal: &Vector3<f64>) -> Option<Self> {
         let normal = Unit::try_new(*normal, 1e-12)?.into_inner();

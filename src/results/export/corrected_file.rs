@@ -12,39 +12,26 @@ use super::cityjson::{OBSTRUCTIONS, OF_ITS_SHAPE, obstruction_of};
 use super::format::rounded;
 use super::report::ReportedModel;
 use crate::base::ids::FacetId;
-use crate::base::params::{Correction, Params};
-use crate::roofs::corrections::{CorrectionTrace, correct};
 use crate::roofs::model::{Building, RoofModel, Surface};
 
-/// A corrected file, and what became of each correction.
-pub struct CorrectedFile {
-    /// The file.
-    pub bytes: Vec<u8>,
-    /// What became of each correction.
-    pub trace: CorrectionTrace,
-}
-
-/// Corrects the model of a CityJSON file, without photographs. A corrected building keeps its
-/// attributes, its geometries in other levels of detail, and what is said of each roof face that
-/// still is one; its walls stand below its eaves. A deleted one keeps its attributes and has no
-/// geometry. One that is added is called `added-1` and so on.
+/// The CityJSON file with another model in it, each of whose facets was one of the file's
+/// (`sources`), or none. A changed building keeps its attributes, its geometries in other levels of
+/// detail, and what is said of each roof face that still is one; its walls stand below its eaves. A
+/// deleted one keeps its attributes and has no geometry. One that is added is called `added-1` and
+/// so on.
 ///
 /// # Errors
-/// Where the file cannot be read, with what was expected and where.
-pub fn correct_file(
+/// Where the file cannot be read or holds a building a line, with what was expected and where.
+pub fn corrected_file(
     file: &[u8],
-    corrections: &[Correction],
-    params: &Params,
-) -> Result<CorrectedFile, String> {
+    model: &RoofModel,
+    sources: &[Option<FacetId>],
+) -> Result<Vec<u8>, String> {
     let read = ReportedModel::read(file)?;
-    let (model, trace) = correct(&read.scene(), read.model(), corrections, params);
     let text = std::str::from_utf8(file).map_err(|_| "is not in UTF-8".to_owned())?;
     let mut rewriting = Rewriting::new(text, &read)?;
-    rewriting.rewrite(&model, &trace.sources)?;
-    Ok(CorrectedFile {
-        bytes: rewriting.finished().into_bytes(),
-        trace,
-    })
+    rewriting.rewrite(model, sources)?;
+    Ok(rewriting.finished().into_bytes())
 }
 
 type Raw<'a> = &'a RawValue;

@@ -42,7 +42,7 @@ mod report;
 mod tileset;
 mod walls;
 
-pub use corrected_file::{CorrectedFile, correct_file};
+pub use corrected_file::corrected_file;
 pub use evidence::evidence_json;
 pub use format::{ATLAS_FILE, MATERIAL_FILE};
 pub use glb::{glb, glb_of};

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::facet_slope_deg;
 use crate::base::geometry::Polygon;
 use crate::base::ids::{BuildingId, FacetId};
+use crate::base::plan_index::PlanIndex;
 use crate::roofs::model::{Facet, RoofModel};
 
 /// Parts share their place where what they share in plan is more than this of the smaller one.
@@ -135,16 +136,18 @@ type Shared = BTreeMap<(usize, usize), Difference>;
 /// Compares two models, whose coordinates are of one frame.
 pub fn compare(first: &RoofModel, second: &RoofModel) -> Comparison {
     let (mut facets, mut buildings) = (Shared::new(), Shared::new());
+    let index = PlanIndex::new(second.facets.iter().map(Facet::plan_bounds));
     for (i, facet) in first.facets.iter().enumerate() {
-        for (j, other) in second.facets.iter().enumerate() {
-            if meet(facet, other) {
-                let difference = Difference::of(facet, other, &facet.plan().and(&other.plan()));
-                facets.insert((i, j), difference);
-                let of = (facet.building.index(), other.building.index());
-                let sum = buildings.entry(of).or_default();
-                *sum = sum.and(difference);
-            }
+        for j in index.touching(facet.plan_bounds(), 0.0) {
+            let other = &second.facets[j as usize];
+            let difference = Difference::of(facet, other, &facet.plan().and(&other.plan()));
+            facets.insert((i, j as usize), difference);
         }
+    }
+    for ((i, j), difference) in &facets {
+        let of = [&first.facets[*i], &second.facets[*j]].map(|f| f.building.index());
+        let sum = buildings.entry(of.into()).or_default();
+        *sum = sum.and(*difference);
     }
     let models = [first, second];
     let areas = models.map(Areas::of_facets);
@@ -159,12 +162,6 @@ pub fn compare(first: &RoofModel, second: &RoofModel) -> Comparison {
         buildings: paired(buildings, &of_buildings, BuildingId::from_index),
         facets: compared,
     }
-}
-
-/// May they share some of the plan?
-fn meet(first: &Facet, second: &Facet) -> bool {
-    let ([low, high], [other_low, other_high]) = (first.plan_bounds(), second.plan_bounds());
-    low.x < other_high.x && other_low.x < high.x && low.y < other_high.y && other_low.y < high.y
 }
 
 /// Each part with at most one of the other model, those that share most first; then the others.
@@ -217,6 +214,8 @@ fn paired<Id: Copy>(
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::super::tests::{gable, hip, roof};
     use super::*;
     use crate::base::math::atan;
@@ -224,19 +223,6 @@ mod tests {
 
     fn model(facets: Vec<Facet>) -> RoofModel {
         close_buildings(&facets, |_| 0.0).0
-    }
-
-    /// A model whose facets are moved, metres.
-    fn moved(model: &RoofModel, [x, y, z]: [f64; 3]) -> RoofModel {
-        let by = nalgebra::Vector3::new(x, y, z);
-        let mut moved = model.clone();
-        for facet in &mut moved.facets {
-            let p = facet.outer[0] + by;
-            facet.plane =
-                crate::base::geometry::Plane::from_point_normal(&p, &facet.plane.normal).unwrap();
-            facet.outer.iter_mut().for_each(|p| *p += by);
-        }
-        moved
     }
 
     #[test]
@@ -256,7 +242,8 @@ mod tests {
         let (raise, shift) = (0.3, 0.5);
         let own = model(gable());
         // Along the ridge, so that the slopes stay above each other.
-        let found = compare(&moved(&own, [shift, 0.0, raise]), &own);
+        let by = Vector3::new(shift, 0.0, raise);
+        let found = compare(&own.clone().relative_to(&-by), &own);
         let [building] = &found.buildings[..] else {
             panic!("{found:?}");
         };

@@ -195,6 +195,27 @@ pub struct RoofModel {
 }
 
 impl RoofModel {
+    /// The same model in a frame whose origin lies `by` further, metres.
+    pub fn relative_to(mut self, by: &Vector3<f64>) -> Self {
+        for facet in &mut self.facets {
+            let rings = std::iter::once(&mut facet.outer).chain(&mut facet.holes);
+            rings.flatten().for_each(|p| *p -= by);
+            facet.plane = facet.plane.relative_to(by);
+            let standing = facet.obstructions.iter_mut();
+            standing.for_each(|o| o.outline.iter_mut().for_each(|p| *p -= by.xy()));
+            if let Some(known) = &mut facet.uncertainty {
+                known.corners.iter_mut().for_each(|corner| corner.at -= by);
+                let ends = known.sides.iter_mut().flat_map(|side| &mut side.ends);
+                ends.for_each(|p| *p -= by.xy());
+            }
+        }
+        for building in &mut self.buildings {
+            building.solid.vertices.iter_mut().for_each(|p| *p -= by);
+            building.ground_z -= by.z;
+        }
+        self
+    }
+
     /// Probability of a corner of a facet, 0 to 1: that all facets of the building which have it
     /// are faces of a roof, each taken by itself.
     pub fn probability_of_corner(&self, building: BuildingId, corner: &Point3<f64>) -> f64 {

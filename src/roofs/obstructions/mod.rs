@@ -47,10 +47,9 @@ const LEVEL_GRADIENT: f64 = 0.05;
 /// Finds what stands on the facets of a model, and adds it to what is known to do so. Returns all
 /// blocks that were weighed, by their tops.
 pub(crate) fn find_obstructions(scene: &Scene, model: &mut RoofModel) -> Vec<JudgedFacet> {
-    let found = crate::base::execution::map(&model.facets, |i, facet| {
-        let others = (model.facets.iter().enumerate()).filter(|(j, _)| *j != i);
-        let others: Vec<Facet> = others.map(|(_, f)| f.clone()).collect();
-        blocks_on(scene, facet, &Occluders::new(&others))
+    let occluders = Occluders::new(&model.facets);
+    let found = crate::base::execution::map(&model.facets, |_, facet| {
+        blocks_on(scene, facet, &occluders)
     });
     let mut judged: Vec<(usize, Weighed)> = (found.into_iter().enumerate())
         .flat_map(|(i, blocks)| blocks.into_iter().map(move |block| (i, block)))
@@ -84,7 +83,7 @@ struct Weighed {
 }
 
 /// What may stand on a facet.
-fn blocks_on(scene: &Scene, facet: &Facet, others: &Occluders) -> Vec<Weighed> {
+fn blocks_on(scene: &Scene, facet: &Facet, occluders: &Occluders) -> Vec<Weighed> {
     let Some(first) = facet.outer.first() else {
         return Vec::new();
     };
@@ -93,7 +92,7 @@ fn blocks_on(scene: &Scene, facet: &Facet, others: &Occluders) -> Vec<Weighed> {
     let [min, max] = facet.plan_bounds();
     let finest = ((max.x - min.x) * (max.y - min.y) / SURFACE_CELLS).sqrt();
     let step = larger(larger(pixel, FINEST_SAMPLE_M), finest);
-    let hidden = |v: ViewId, p: &Point3<f64>| others.hide(p, &scene.camera(v).center);
+    let hidden = |v: ViewId, p: &Point3<f64>| occluders.hide(p, &scene.camera(v).center);
     let visibility = PartVisibility::new(scene, facet, step, &hidden);
     let hidden = |v: ViewId, p: &Point3<f64>| visibility.is_hidden(v, &p.xy());
     let Some(mut seen) = SeenSurface::new(scene, facet, step, &hidden) else {

@@ -334,7 +334,7 @@ export async function reopen(page: Page, tab: string, fields: string): Promise<v
   // Before the tab is there the address may still be that of the state before.
   await expect(tabOf(page, tab)).toHaveAttribute("aria-selected", "true");
   // What a run has found is written half a second after its end, and takes a moment.
-  await page.waitForTimeout(2000);
+  await page.waitForTimeout(1200);
   await page.reload();
 }
 

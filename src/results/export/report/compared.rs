@@ -2,14 +2,12 @@
 
 use std::fmt::Write;
 
-use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::reported::ReportedModel;
 use crate::base::ids::{BuildingId, FacetId};
 use crate::base::math::median;
 use crate::results::roof_report::{Compared, compare};
-use crate::roofs::model::RoofModel;
 
 /// What two models say of one place.
 #[derive(Clone, Debug, Serialize)]
@@ -34,8 +32,8 @@ impl ReportedModel {
                 "the models are in EPSG:{own} and EPSG:{other}; convert one of them"
             ));
         }
-        let moved = moved(&second.model, &(second.origin - self.origin));
-        let found = compare(&self.model, &moved);
+        let here = (second.model.clone()).relative_to(&(self.origin - second.origin));
+        let found = compare(&self.model, &here);
         let building = |of: &Self, id: BuildingId| of.names[id.index()].clone();
         let facet = |of: &Self, id: FacetId| {
             let name = &of.names[of.model.facets[id.index()].building.index()];
@@ -52,17 +50,6 @@ impl ReportedModel {
                 .collect(),
         })
     }
-}
-
-/// The facets of a model, elsewhere; a comparison asks for nothing else.
-fn moved(model: &RoofModel, by: &Vector3<f64>) -> RoofModel {
-    let mut moved = model.clone();
-    for facet in &mut moved.facets {
-        facet.plane.d -= facet.plane.normal.dot(by);
-        let rings = std::iter::once(&mut facet.outer).chain(&mut facet.holes);
-        rings.flatten().for_each(|p| *p += by);
-    }
-    moved
 }
 
 impl ComparedModels {

@@ -45,7 +45,7 @@ const written = signal<number | null>(null);
 /** Bytes that the browser keeps of the project; null when it keeps nothing. */
 export const storedBytes: ReadonlySignal<number | null> = written;
 
-/** So long after the last change the project is written, milliseconds. */
+/** So long after a change the project is written, milliseconds. */
 const DELAY_MS = 400;
 
 /** A project that is kept, or that of the last visit; null where there is none, or storage is forbidden. */
@@ -144,21 +144,26 @@ function inTurn(act: () => Promise<void>): Promise<void> {
   return lastWrite;
 }
 
-/** Writes the last of several changes a little later, and at once where those that follow are of another project. */
+/**
+ * Writes the last of several changes a little after the first, however many follow, and at once where those that follow are of
+ * another project.
+ */
 function writer<T>(act: (id: number, what: T) => Promise<void>): (what: T) => void {
-  let [timer, waiting, of] = [0, () => {}, 0];
+  let waiting: { id: number; what: T } | null = null;
+  const write = () => {
+    if (waiting !== null) {
+      const { id, what } = waiting;
+      waiting = null;
+      void inTurn(() => act(id, what));
+    }
+  };
   return (what) => {
     const { id } = presentProject();
-    clearTimeout(timer);
-    if (of !== id) {
-      waiting();
+    if (waiting?.id !== id) {
+      write();
+      window.setTimeout(write, DELAY_MS);
     }
-    of = id;
-    waiting = () => {
-      waiting = () => {};
-      void inTurn(() => act(id, what));
-    };
-    timer = window.setTimeout(() => waiting(), DELAY_MS);
+    waiting = { id, what };
   };
 }
 
