@@ -44,3 +44,24 @@ impl HidingTable {
         self.difference.at(difference)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_height_is_known_no_better_than_the_floor_and_no_better_than_it_seems() {
+        let table = HidingTable::fitted();
+        assert_eq!(table.inflated(0.0), table.height_floor_m);
+        for seeming_m in [0.05, 0.5, 5.0] {
+            let inflated = table.inflated(seeming_m);
+            assert!(inflated > table.height_floor_m && inflated > table.height_scale * seeming_m);
+        }
+    }
+
+    #[test]
+    fn what_differs_more_speaks_more_for_something_before_it() {
+        let table = HidingTable::fitted();
+        assert!(table.nats(0.1) < 0.0 && table.nats(20.0) > 1.0);
+    }
+}

@@ -151,6 +151,9 @@ mod tests {
             assert!(to_sun(latitude, declination, 9.0).x > 0.0);
         }
         assert!((declination_deg(172.0) - 23.45).abs() < 0.01);
+        // Where the grid's north is true east, its east is true south.
+        let south = turned(&-Vector3::y(), 90.0);
+        assert!((south - Vector3::x()).norm() < 1e-12, "{south}");
     }
 
     #[test]
