@@ -102,6 +102,7 @@ step biome check www lint
 step clippy-wasm32 check finished clippy-wasm32
 if [ "${1:-all}" = all ]; then
     # While tests that end late leave a core free.
+    start size www size
     start wasm wasm-pack test --node --mode no-install tests/wasm --profile page
     step native cargo cargo test --quiet --no-fail-fast
     # What computes natively and in wasm side by side, and leaves gaps for what needs one core.
@@ -109,7 +110,7 @@ if [ "${1:-all}" = all ]; then
     step doc check env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet
     step wasm cargo finished wasm
     step typescript node www test:unit
-    step size check www size
+    step size check finished size
     step identical check finished identical
     # Named, so that the comparison with it is not skipped.
     export RIDGELINE=$PWD/target/debug/ridgeline
