@@ -22,7 +22,7 @@
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: demo test build lint identical golden score jury judge calibrate bench interrupt fuzz native setup clean
+.PHONY: demo test build lint identical golden score jury judge calibrate bench interrupt fuzz native native-tests setup clean
 
 # Small programs of our own on the crates of wasm-bindgen and wasm-pack, kept for all clones that have the same ones.
 CACHE := $(or $(RIDGELINE_CACHE),$(HOME)/.cache/ridgeline)
@@ -55,8 +55,12 @@ build: $(SITE)
 
 # Two at a time, because compilers end on one core.
 test:
-	$(MAKE) -j 2 setup $(WASM_PACK) $(STAMPS)/chromium
+	$(MAKE) -j 2 setup $(WASM_PACK) $(STAMPS)/chromium native-tests
 	tests/all.sh
+
+# As tests/all.sh compiles them.
+native-tests:
+	[ -d target/debug/incremental ] || export CARGO_INCREMENTAL=0; cargo test --no-run --quiet
 
 lint: $(WASM32) $(NPM) $(PACKAGE) $(ORIENTATION)
 	tests/all.sh lint

@@ -52,6 +52,14 @@ pub enum Correction {
         /// A point of what stands on a facet.
         at: Point3<f64>,
     },
+    /// Something stands on a facet. What was found at its place is this.
+    AddObstruction {
+        /// Its corners from above, in order; what lies beyond the facet below their middle is cut
+        /// off.
+        outline: Vec<Point3<f64>>,
+        /// Height of its top above the facet, metres.
+        height_m: f64,
+    },
     /// A facet is a roof's face.
     Confirm {
         /// The facet.

@@ -7,6 +7,7 @@
 //! closing    the place of a deleted facet, divided between its neighbours
 //! shape      facets deleted, merged, split, added
 //! drawn      the line of an edge drawn in one photograph
+//! standing   what stands on facets, deleted and added
 //! slope      how what lies beside it falls, by what the photographs show
 //! dividing   facets divided along such a line
 //! adjusting  corners, edges and slopes stated; the building is adjusted to them
@@ -25,6 +26,7 @@ mod outcome;
 mod place;
 mod shape;
 mod slope;
+mod standing;
 #[cfg(test)]
 mod tests;
 
@@ -94,7 +96,10 @@ fn apply(
     match correction {
         Correction::DeleteFacet { facet, filled } => shape::delete_facet(draft, facet, *filled),
         Correction::DeleteBuilding { building } => shape::delete_building(draft, building),
-        Correction::DeleteObstruction { at } => shape::delete_obstruction(draft, at),
+        Correction::DeleteObstruction { at } => standing::delete_obstruction(draft, at),
+        Correction::AddObstruction { outline, height_m } => {
+            standing::add_obstruction(draft, outline, *height_m)
+        }
         Correction::Confirm { facet } => {
             let at = draft.facet(facet)?;
             draft.facet_mut(at).probability = 1.0;
@@ -175,7 +180,9 @@ fn in_local_frame(correction: &Correction, origin: &Vector3<f64>) -> Correction 
             along.iter_mut().for_each(point);
         }
         Correction::AddEdge { .. } => {}
-        Correction::AddFacet { outline } => outline.iter_mut().for_each(point),
+        Correction::AddFacet { outline } | Correction::AddObstruction { outline, .. } => {
+            outline.iter_mut().for_each(point);
+        }
     }
     local
 }

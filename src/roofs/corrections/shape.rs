@@ -9,7 +9,7 @@ use super::place::corners;
 use crate::base::geometry::{Plane, Polygon, Segment3};
 use crate::base::ids::BuildingId;
 use crate::base::params::FacetPlace;
-use crate::roofs::model::{Facet, Obstruction, is_simple};
+use crate::roofs::model::{Facet, is_simple};
 
 /// Least area of a new facet in plan, m^2. Assumption: a roof window.
 pub(super) const LEAST_AREA_M2: f64 = 0.25;
@@ -19,7 +19,7 @@ const SNAP_DISTANCE_M: f64 = 0.3;
 /// A line this far off a facet is off it, metres.
 pub(super) const OFF_PLANE_M: f64 = 0.02;
 /// What is drawn lies no further from the origin of the scene, metres.
-const FARTHEST_COORDINATE_M: f64 = 1e5;
+pub(super) const FARTHEST_COORDINATE_M: f64 = 1e5;
 /// Height of a building where nothing is known of the ground, metres. Assumption: a storey.
 const STOREY_M: f64 = 3.0;
 /// Weight of a corner that the model has, among those of a drawn facet.
@@ -43,15 +43,6 @@ pub(super) fn delete_facet(
 pub(super) fn delete_building(draft: &mut Draft, place: &Point3<f64>) -> Result<(), NotApplied> {
     let house = draft.house(place)?;
     draft.houses.remove(house);
-    Ok(())
-}
-
-pub(super) fn delete_obstruction(draft: &mut Draft, at: &Point3<f64>) -> Result<(), NotApplied> {
-    let stands_there = |o: &Obstruction| Polygon::from(o.outline.clone()).contains(&at.xy());
-    let facet = draft.facet_below(&at.xy()).ok_or(NotApplied::NoFacet)?;
-    let all = &mut draft.facet_mut(facet).obstructions;
-    let found = all.iter().position(stands_there);
-    all.remove(found.ok_or(NotApplied::NoObstruction)?);
     Ok(())
 }
 
@@ -158,10 +149,7 @@ pub(super) fn add_facet(
     outline: &[Point3<f64>],
     ground_z: Option<f64>,
 ) -> Result<(), NotApplied> {
-    let is_near = |p: &Point3<f64>| p.coords.iter().all(|c| c.abs() < FARTHEST_COORDINATE_M);
-    if outline.len() < 3 || outline.len() > 1000 || !outline.iter().all(is_near) {
-        return Err(NotApplied::Implausible);
-    }
+    is_plausible_outline(outline)?;
     let drawn: Vec<(Point3<f64>, f64)> = (outline.iter())
         .map(|p| {
             let all = draft.facets().flat_map(|(_, f)| corners(&f.facet));
@@ -200,6 +188,13 @@ pub(super) fn add_facet(
     changed.replace(None, facets, ground_z)?;
     *draft = changed;
     Ok(())
+}
+
+/// Is it no outline, or one of numbers that a model cannot have?
+pub(super) fn is_plausible_outline(outline: &[Point3<f64>]) -> Result<(), NotApplied> {
+    let is_near = |p: &Point3<f64>| p.coords.iter().all(|c| c.abs() < FARTHEST_COORDINATE_M);
+    let is_plausible = (3..=1000).contains(&outline.len()) && outline.iter().all(is_near);
+    is_plausible.then_some(()).ok_or(NotApplied::Implausible)
 }
 
 pub(super) fn mirror(

@@ -314,6 +314,33 @@ test("facets are deleted and made symmetric, and corners dragged, in the 3D view
     await undo();
   });
 
+  await test.step("what stands on a facet is drawn, with its height", async () => {
+    await select(slope);
+    const [nx, ny, nz] = slope.normal;
+    const level = unit([-ny, nx, 0]);
+    const uphill = unit(cross(slope.normal, level));
+    const corners = (
+      [
+        [-1, -1],
+        [1, -1],
+        [1, 1],
+        [-1, 1],
+      ] as const
+    ).map(([u, v]) => along(along(slope.at, level, 0.5 * u), uphill, 0.5 * v));
+    const seen = await look(page, origin, slope.at, [nx, ny, nz]);
+    await page.getByRole("button", { name: "Draw", exact: true }).click();
+    for (const corner of corners) {
+      const { x, y } = seen(corner);
+      await page.mouse.click(x, y);
+    }
+    await panel().getByLabel("Something stands here, height above the facet").fill("0.8");
+    await page.keyboard.press("Enter");
+    await expect(done().first()).toHaveText(/Obstruction added: 0.80 m/);
+    await settled(page);
+    await expect(panel().getByRole("button", { name: /^Delete obstruction 1/ })).toBeVisible();
+    await undo();
+  });
+
   await test.step("the dot of a corner is dragged", async () => {
     await select(slope);
     const eave = [...west.corners].sort((p, q) => p[2] - q[2])[0] ?? slope.at;

@@ -81,6 +81,62 @@ fn what_stands_on_a_facet_goes_and_the_facet_stays() {
 }
 
 #[test]
+fn what_a_person_sees_on_a_facet_stands_there_as_far_as_the_facet_reaches() {
+    let mut model = truth();
+    let on = (model
+        .facets
+        .iter()
+        .position(|f| f.covers(&Point2::new(0.5, 1.5))))
+    .unwrap();
+    let add = |corners: &[[f64; 2]], height_m| Correction::AddObstruction {
+        outline: corners.iter().map(|&[x, y]| world([x, y, 0.0])).collect(),
+        height_m,
+    };
+    // Across the ridge, drawn clockwise; its middle lies on the facet to the north.
+    let drawn = [[0.0, -0.5], [0.0, 1.5], [1.0, 1.5], [1.0, -0.5]];
+    let found = mended(&model, &[add(&drawn, 0.8)]);
+    let [added] = &found.facets[on].obstructions[..] else {
+        panic!("{:?}", found.facets[on].obstructions);
+    };
+    let area = crate::base::geometry::signed_area(added.outline.iter().copied());
+    assert!(
+        (area - 1.5).abs() < 1e-6,
+        "to the ridge, from above: {area}"
+    );
+    assert_eq!((added.height_m, added.probability), (0.8, 1.0));
+    // What was found there is this, and not a second one.
+    model.facets[on].obstructions = vec![Obstruction {
+        probability: 0.8,
+        height_m: 0.3,
+        ..added.clone()
+    }];
+    let again = mended(&model, &[add(&drawn, 0.8)]);
+    assert_eq!(again, found);
+    let delete = Correction::DeleteObstruction {
+        at: world([0.5, 1.0, 0.0]),
+    };
+    assert_eq!(mended(&found, &[delete]), truth());
+
+    let why = |corners: &[[f64; 2]], height_m| why_not(&model, add(corners, height_m));
+    for height in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(why(&drawn, height), NotApplied::Implausible, "{height}");
+    }
+    assert_eq!(why(&drawn[..2], 0.8), NotApplied::Implausible);
+    assert_eq!(
+        why(&[[0.0, 1.0], [1.0, 2.0], [1.0, 1.0], [0.0, 2.0]], 0.8),
+        NotApplied::NoRoom
+    );
+    assert_eq!(
+        why(&[[0.0, 1.0], [0.05, 1.0], [0.05, 1.05]], 0.8),
+        NotApplied::NoRoom
+    );
+    assert_eq!(
+        why(&drawn.map(|[x, y]| [x + 50.0, y]), 0.8),
+        NotApplied::NoFacet
+    );
+}
+
+#[test]
 fn a_building_goes_and_the_others_keep_their_bits() {
     let mut facets = gable();
     for f in gable() {
@@ -236,7 +292,7 @@ fn whatever_is_corrected_the_invariants_hold() {
                 let corners: Vec<Point3<f64>> =
                     model.facets.iter().flat_map(|f| f.outer.clone()).collect();
                 let corner = corners[(number(0.0, 7.99)) as usize] + Vector3::from(ORIGIN);
-                match number(0.0, 8.0) as usize {
+                match number(0.0, 9.0) as usize {
                     0 => Correction::DeleteFacet {
                         facet: here,
                         filled: None,
@@ -266,6 +322,10 @@ fn whatever_is_corrected_the_invariants_hold() {
                     6 => Correction::Merge {
                         facet: here,
                         with: place(&model, -x, -y),
+                    },
+                    7 => Correction::AddObstruction {
+                        outline: vec![world(p), world(q), corner],
+                        height_m: number(0.1, 3.0),
                     },
                     _ => Correction::MoveEdge {
                         from: edge([[6.0, 0.0, 9.0], [-6.0, 0.0, 9.0]]),

@@ -392,9 +392,23 @@ function Drawn({ facets, index }: { facets: readonly Facet[]; index: number | nu
   return (
     <div class="row wrap">
       {points.length === 0 && (
-        <span class="muted">Draw (in the 3D view) marks the corners of a facet, or an edge.</span>
+        <span class="muted">
+          Draw (in the 3D view) marks the corners of a facet or of what stands on it, or an edge.
+        </span>
       )}
       <Deeds all={deeds} />
+      {facet !== undefined && points.length >= 3 && (
+        <NumberField
+          name="Something stands here, height above the facet"
+          unit="m"
+          value=""
+          onTake={(height_m) => {
+            forgetDrawn();
+            const outline = corners.map(worldOf);
+            return correct({ correction: "add_obstruction", outline, height_m }, outline[0] ?? null);
+          }}
+        />
+      )}
       {points.length > 0 && (
         <button type="button" class="quiet" onClick={forgetDrawn}>
           Forget {counted(points.length, "points")}

@@ -5,6 +5,7 @@ const KINDS: Record<Correction["correction"], string> = {
   delete_facet: "Facet deleted",
   delete_building: "Building deleted",
   delete_obstruction: "Obstruction deleted",
+  add_obstruction: "Obstruction added",
   confirm: "Facet confirmed",
   move_corner: "Corner moved",
   move_edge: "Edge moved",
@@ -30,6 +31,8 @@ export function correctionWords(one: Correction): string {
     case "set_ground":
     case "set_eave":
       return `${words}: ${one.height.toFixed(2)} m`;
+    case "add_obstruction":
+      return `${words}: ${one.height_m.toFixed(2)} m`;
     case "add_edge":
       return `${words} in ${one.photograph}`;
     case "move_corner":
