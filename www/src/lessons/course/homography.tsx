@@ -1,11 +1,22 @@
 /** Lesson 7: a plane maps image to image; one angle of it is free, and the images choose it. */
 import { computed, signal } from "@preact/signals";
-import { Choice } from "../../app/parts/Choice";
 import { clamp, DEGREE, distance2 } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider, WindowCard } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
-import { degrees, num, pixels, place } from "../parts/say";
+import {
+  Curve,
+  Dot,
+  Drawing,
+  Handle,
+  Label,
+  Line,
+  Plot,
+  PointHandle,
+  Slider,
+  Switch,
+  WindowCard,
+} from "../parts/draw";
+import { type Lesson, onScene } from "../parts/lesson";
+import { degrees, num, pixels } from "../parts/say";
 import { ImagePane } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { type Camera, imageOf, mapped, planeHomography } from "../toy/camera";
@@ -17,7 +28,8 @@ const SECOND = aerial([7, -5, 42]);
 const NEAR = aerial([0, -7.5, 42]);
 const FAR = aerial([13, 3, 40]);
 
-type PlaneName = "roof" | "ground";
+const PLANES = { roof: "H of the south roof", ground: "H of the ground" } as const;
+type PlaneName = keyof typeof PLANES;
 const plane = signal<PlaneName>("roof");
 const at = signal<Vec2>([150, 130]);
 const planeOf = (name: PlaneName) =>
@@ -32,35 +44,16 @@ const really = () => imageOf(SECOND, surfaceAt(FIRST, at.value).X);
 function PlaneFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
-      {isRevealed && (
-        <Choice
-          legend="Plane of the homography"
-          choices={[
-            ["roof", "H of the south roof"],
-            ["ground", "H of the ground"],
-          ]}
-          of={plane}
-        />
-      )}
+      {isRevealed && <Switch legend="Plane of the homography" names={PLANES} of={plane} />}
       <div class="pair">
         <ImagePane camera={FIRST} colour={1}>
-          <Handle
-            at={at.value}
-            class="s1"
-            label="Point x"
-            says={place(at.value, 0)}
-            of={at}
-            to={([x, y]): Vec2 => [clamp(x, 5, FIRST.width - 5), clamp(y, 5, FIRST.height - 5)]}
-            isFixed={!isRevealed}
-          />
+          <PointHandle of={at} size={FIRST} margin={5} class="s1" label="Point x" isFixed={!isRevealed} />
         </ImagePane>
         <ImagePane camera={SECOND} colour={2}>
           <Line from={taken()} to={really()} class="s7" />
           <Dot at={really()} class="s2" />
           <Dot at={taken()} class="s6" />
-          <Label at={taken()} dx={9} dy={-7} class="s6">
-            Hx
-          </Label>
+          <Label at={taken()} dx={9} dy={-7} class="s6" text="Hx" />
         </ImagePane>
       </div>
     </>
@@ -128,12 +121,8 @@ function Section({ isRevealed }: { isRevealed: boolean }) {
       <Line from={foot} to={inSection(8, 5)} class="rule" />
       <Line from={foot} to={end} class="s6 thick" />
       <Dot at={foot} class="s4" />
-      <Label at={foot} dx={-8} dy={-8} anchor="end" class="s4 letter">
-        L
-      </Label>
-      <Label at={end} dx={14} dy={4} class="s6">
-        <tspan class="letter">θ</tspan> = {degrees(angle)}
-      </Label>
+      <Label at={foot} dx={-8} dy={-8} anchor="end" class="s4 letter" text="L" />
+      <Label at={end} dx={14} dy={4} class="s6" letter="θ" text={`= ${degrees(angle)}`} />
       <Handle
         at={end}
         class="s6"
@@ -191,7 +180,8 @@ function GuessFigure({ isRevealed }: { isRevealed: boolean }) {
   );
 }
 
-type Side = "roof" | "ground";
+const SIDES = { roof: "The roof's side", ground: "The other side" } as const;
+type Side = keyof typeof SIDES;
 const side = signal<Side>("roof");
 /** Points of interest: a grid beside the eave, upwards on the roof or downwards before it. */
 const pointsOf = (of: Side): InterestPoint[] =>
@@ -230,10 +220,8 @@ function SimPlot(props: {
   const { curves: all, isAtTheta = false } = props;
   return (
     <Plot
-      x={{ min: -75, max: 75 }}
-      y={{ min: 0, max: 1 }}
-      xTitle="θ, degrees"
-      yTitle="Sim(θ)"
+      x={[-75, 75, "θ, degrees"]}
+      y={[0, 1, "Sim(θ)"]}
       label="Similarity against the angle of the half-plane"
       height={230}
     >
@@ -269,14 +257,7 @@ const failed = () => {
 function AcceptFigure() {
   return (
     <>
-      <Choice
-        legend="Side of the eave"
-        choices={[
-          ["roof", "The roof's side"],
-          ["ground", "The other side"],
-        ]}
-        of={side}
-      />
+      <Switch legend="Side of the eave" names={SIDES} of={side} />
       <SimPlot curves={[{ values: curveOf(side.value, 1), class: "s6" }]} />
       <Slider
         label="texture of the roof"
@@ -395,14 +376,8 @@ export const HOMOGRAPHY: Lesson = {
       says: () =>
         `Near: peak ${num(Math.max(...curveOf("roof", 2)), 2)}, half of it over ${num(widthOf(curveOf("roof", 2)), 0)}°. Far: peak ${num(Math.max(...curveOf("roof", 3)), 2)}, half of it over ${num(widthOf(curveOf("roof", 3)), 0)}°.`,
     },
-    {
-      id: "own",
-      title: "Turn a half-plane of a whole scene",
-      prose: () => [
-        "Drag $theta$ on the curve: the windows of all views are warped by it. Show the other side of the line, too; at the border of a roof it agrees at no angle.",
-      ],
-      figure: realFigure("theta-sweep"),
-      isReal: true,
-    },
+    onScene("own", "Turn a half-plane of a whole scene", realFigure("theta-sweep"), [
+      "Drag $theta$ on the curve: the windows of all views are warped by it. Show the other side of the line, too; at the border of a roof it agrees at no angle.",
+    ]),
   ],
 };

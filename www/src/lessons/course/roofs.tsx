@@ -3,7 +3,7 @@ import { signal } from "@preact/signals";
 import { clamp, DEGREE, planArea, rectangle } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import { Dot, Drawing, Handle, Label, Line, Shape, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
+import { type Lesson, onScene } from "../parts/lesson";
 import { degrees, metres, num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
 import { facetOf, heightOf, PLAN, ridgeOf, SIDES, type SideName } from "../toy/roofs";
@@ -35,9 +35,7 @@ function RidgeFigure({ isRevealed }: { isRevealed: boolean }) {
           <Line from={feet} to={inCut(at, z)} class="s4 thick" />
           <Line from={footn} to={inCut(at, z)} class="s4 thick" />
           <Dot at={inCut(at, z)} class="s4" />
-          <Label at={inCut(at, z)} dy={-12} anchor="middle" class="s4">
-            {metres(z)}
-          </Label>
+          <Label at={inCut(at, z)} dy={-12} anchor="middle" class="s4" text={metres(z)} />
           <Handle
             at={ends}
             class="s6"
@@ -67,12 +65,8 @@ function RidgeFigure({ isRevealed }: { isRevealed: boolean }) {
           />
         </>
       )}
-      <Label at={feet} dx={-10} dy={-8} anchor="end" class="s6">
-        {degrees(south.value)}
-      </Label>
-      <Label at={footn} dx={10} dy={-8} class="s6">
-        {degrees(north.value)}
-      </Label>
+      <Label at={feet} dx={-10} dy={-8} anchor="end" class="s6" text={degrees(south.value)} />
+      <Label at={footn} dx={10} dy={-8} class="s6" text={degrees(north.value)} />
     </Drawing>
   );
 }
@@ -133,9 +127,14 @@ function EnvelopeFigure({ isRevealed }: { isRevealed: boolean }) {
             ["west", [-PLAN.length, 0], -8, 4, "end"],
           ] as const
         ).map(([side, at, dx, dy, anchor]) => (
-          <Label key={side} at={inPlan(at)} dx={dx} dy={dy} anchor={anchor}>
-            {slopes.value[side] === null ? "–" : degrees(slopes.value[side] ?? 0)}
-          </Label>
+          <Label
+            key={side}
+            at={inPlan(at)}
+            dx={dx}
+            dy={dy}
+            anchor={anchor}
+            text={slopes.value[side] === null ? "–" : degrees(slopes.value[side] ?? 0)}
+          />
         ))}
       </Drawing>
       {isRevealed && (
@@ -189,12 +188,8 @@ function GroupFigure() {
         of={lift}
         to={([, y]) => clamp((at(3.2)[1] - y) / CUT.scale, -1.5, 1.5)}
       />
-      <Label at={at(0)} dx={-10} dy={18} anchor="end" class="s1">
-        eave
-      </Label>
-      <Label at={at(2.4, lift.value)} dx={-10} dy={-8} anchor="end" class="s2">
-        another line
-      </Label>
+      <Label at={at(0)} dx={-10} dy={18} anchor="end" class="s1" text="eave" />
+      <Label at={at(2.4, lift.value)} dx={-10} dy={-8} anchor="end" class="s2" text="another line" />
     </Drawing>
   );
 }
@@ -224,12 +219,13 @@ function ConflictFigure({ isRevealed }: { isRevealed: boolean }) {
           points={box(from, reach.value)}
           class={`outline s7 ${isRevealed && !isBridge ? "gone" : ""}`}
         />
-        <Label at={[x0 + 10, y0]} dy={-8} class="s4">
-          a face
-        </Label>
-        <Label at={[x0 + scale * (from + 2.2), y0 + scale * 5]} dy={20} class="s7">
-          a bridge to the next house
-        </Label>
+        <Label at={[x0 + 10, y0]} dy={-8} class="s4" text="a face" />
+        <Label
+          at={[x0 + scale * (from + 2.2), y0 + scale * 5]}
+          dy={20}
+          class="s7"
+          text="a bridge to the next house"
+        />
         {isRevealed && (
           <Handle
             at={end}
@@ -243,15 +239,7 @@ function ConflictFigure({ isRevealed }: { isRevealed: boolean }) {
           />
         )}
       </Drawing>
-      {isRevealed && (
-        <Slider
-          symbol="tau"
-          label="of the bridge"
-          of={real}
-          range={[0.05, 1, 0.05]}
-          says={num(real.value, 2)}
-        />
-      )}
+      {isRevealed && <Slider symbol="tau" label="of the bridge" of={real} range={[0.05, 1, 0.05]} />}
     </>
   );
 }
@@ -275,9 +263,7 @@ export const ROOFS: Lesson = {
         kind: "estimate",
         question: "The eaves are 5 m high and 8 m apart, the slopes 30° and 45°. How high is the ridge?",
         unit: "m",
-        min: 5,
-        max: 12,
-        step: 0.1,
+        range: [5, 12, 0.1],
         truth: () => ridgeOf(30 * DEGREE, 45 * DEGREE).z,
         within: 0.4,
         why: () => "The steeper side is shorter: the ridge is not in the middle. Drag the half-planes.",
@@ -340,23 +326,11 @@ export const ROOFS: Lesson = {
       says: () =>
         `Face: $S$ = ${num(scoreTrue)} m². Bridge: ${num(bridgeArea(), 0)} m² · ${num(real.value, 2)} = ${num(scoreBridge())} m². ${scoreBridge() > scoreTrue ? "The bridge stays, and it is false." : "The face stays."}`,
     },
-    {
-      id: "own-groups",
-      title: "Groups of a whole scene",
-      prose: () => [
-        "Each group is a plane with its lines and half-planes. Pick one: its members light up, and so do the facets that it became.",
-      ],
-      figure: realFigure("groups"),
-      isReal: true,
-    },
-    {
-      id: "own",
-      title: "Borders and facets of a whole scene",
-      prose: () => [
-        "Border lines by their kind, closed outlines, and what was rejected and why. ridgeline decides by one sum over all cells of the plan which plane covers what, instead of pair by pair.",
-      ],
-      figure: realFigure("facet-plan"),
-      isReal: true,
-    },
+    onScene("own-groups", "Groups of a whole scene", realFigure("groups"), [
+      "Each group is a plane with its lines and half-planes. Pick one: its members light up, and so do the facets that it became.",
+    ]),
+    onScene("own", "Borders and facets of a whole scene", realFigure("facet-plan"), [
+      "Border lines by their kind, closed outlines, and what was rejected and why. ridgeline decides by one sum over all cells of the plan which plane covers what, instead of pair by pair.",
+    ]),
   ],
 };
