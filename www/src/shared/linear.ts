@@ -60,6 +60,12 @@ export function apply(a: Mat, v: Vector): number[] {
 
 export const apply3 = (a: Mat, v: Vector): Vec3 => apply(a, v) as unknown as Vec3;
 
+/** a + factor times b. */
+export const sum = (a: Mat, b: Mat, factor = 1): Mat => a.map((row, i) => add(row, b[i] as Vector, factor));
+
+/** a bᵀ */
+export const outer = (a: Vector, b: Vector): Mat => a.map((x) => scaled(b, x));
+
 /** [v]x: the matrix of the cross product with v. */
 export const crossMatrix = ([x = 0, y = 0, z = 0]: Vector): Mat => [
   [0, -z, y],

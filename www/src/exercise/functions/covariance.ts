@@ -1,7 +1,7 @@
 /** How well a point is known that two views show: B99 figure 9, "accuracy against the number of views". */
-import { dot, inverse, type Mat, times, transpose } from "../../shared/linear";
+import { dot, inverse, type Mat, sum, times, transpose } from "../../shared/linear";
 import { type FunctionExercise, matrixProblem } from "../judging/judge";
-import { sum, type Vector } from "../judging/linear";
+import type { Vector } from "../judging/linear";
 import { between, plantedCamera, plantedPoint } from "../judging/random";
 
 type Input = readonly [projections: readonly Mat[], x: Vector, sigma: number];

@@ -1,7 +1,19 @@
 /** The homography that a plane induces between two views: H(theta) of B99 4.1. */
-import { add, apply, dot, inverse, type Mat, scaled, sub, times, transpose } from "../../shared/linear";
+import {
+  add,
+  apply,
+  dot,
+  inverse,
+  type Mat,
+  outer,
+  scaled,
+  sub,
+  sum,
+  times,
+  transpose,
+} from "../../shared/linear";
 import { type FunctionExercise, matrixProblem } from "../judging/judge";
-import { dehomogenised, distance, isSameUpToScale, outer, sum, type Vector } from "../judging/linear";
+import { dehomogenised, distance, isSameUpToScale, type Vector } from "../judging/linear";
 import { between, plantedCamera } from "../judging/random";
 
 type Input = readonly [k: Mat, kOther: Mat, r: Mat, t: Vector, n: Vector, d: number];
