@@ -19,8 +19,7 @@ import {
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PALETTE, type ThemeColours } from "../../shared/palette";
 import type { Selection } from "../../shared/selection";
-import { disposeObject, type Layer } from "../scene/layer";
-import { SelectedObject } from "../scene/selectedObject";
+import { disposeObject, type Layer, SelectedObject } from "../scene/layer";
 import { normalTint } from "./facets";
 
 export type ModelMode = "textured" | "plain" | "wireframe" | "normals" | "method" | "sun";

@@ -24,20 +24,20 @@ export interface Layer {
   dispose(): void;
 }
 
-/** The layer for looking at only: a selection is not of its things. */
-export function unpicked({ object, dispose }: Pick<Layer, "object" | "dispose">): Layer {
-  return { object, pick: () => null, highlight: () => undefined, dispose };
+/** A layer of an object: for looking at only, as far as nothing else is said. */
+export function layerOf(object: Object3D, of: Partial<Omit<Layer, "object">> = {}): Layer {
+  return {
+    object,
+    pick: () => null,
+    highlight: () => undefined,
+    dispose: () => disposeObject(object),
+    ...of,
+  };
 }
 
-/** Makes all parts of a layer as opaque as each of them is, or fainter. */
-export function fade<Name extends string>(
-  parts: Readonly<Record<Name, { material: Material }>>,
-  opacities: Readonly<Record<Name, number>>,
-  by: number,
-): void {
-  for (const name of Object.keys(parts) as Name[]) {
-    parts[name].material.opacity = opacities[name] * by;
-  }
+/** The layer for looking at only: a selection is not of its things. */
+export function unpicked({ object, dispose }: Pick<Layer, "object" | "dispose">): Layer {
+  return layerOf(object, { dispose });
 }
 
 /** Seen from both sides by one shader: what is transparent would be drawn in two passes, each with its own. */
@@ -98,4 +98,28 @@ export function quads(count: number): number[] {
 /** A colour's components as the vertex attributes of a geometry want them. */
 export function rgb(colour: string): [number, number, number] {
   return new Color(colour).toArray() as [number, number, number];
+}
+
+/** The one object of a layer that shows what is selected: unpickable, and made anew with every selection. */
+export class SelectedObject {
+  #shown: Object3D | null = null;
+  readonly #parent: Object3D;
+
+  constructor(parent: Object3D) {
+    this.#parent = parent;
+  }
+
+  show(object: Object3D | null): void {
+    if (this.#shown !== null) {
+      this.#parent.remove(this.#shown);
+      disposeObject(this.#shown);
+    }
+    this.#shown = object;
+    if (object !== null) {
+      object.traverse((one) => {
+        one.raycast = () => undefined;
+      });
+      this.#parent.add(object);
+    }
+  }
 }

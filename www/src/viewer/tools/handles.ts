@@ -10,7 +10,7 @@ import {
   Vector3,
 } from "three";
 import { PALETTE } from "../../shared/palette";
-import { disposeObject, type Layer, unpicked } from "../scene/layer";
+import { type Layer, layerOf } from "../scene/layer";
 
 /** A dot is taken within this distance, CSS pixels. */
 const REACH_PX = 12;
@@ -48,7 +48,7 @@ export function dragged(from: Vector3, ray: Ray, isUpright: boolean): Vector3 | 
 export function buildHandles(handles: readonly Vector3[]): Layer {
   const object = dots(handles, PALETTE.selected, DOT_PX);
   object.renderOrder = 10;
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }
 
 /** Dots of one size on the screen, over whatever lies before them. */

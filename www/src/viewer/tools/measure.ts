@@ -11,7 +11,7 @@ import {
 } from "three";
 import { areaVector, norm } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
-import { disposeObject, type Layer, unpicked } from "../scene/layer";
+import { type Layer, layerOf } from "../scene/layer";
 import { dots } from "./handles";
 
 export interface Measured {
@@ -124,5 +124,5 @@ export function buildMeasure(points: readonly Vector3[]): Layer {
     one.raycast = () => undefined;
     object.add(one);
   }
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }
