@@ -2,7 +2,7 @@
 import { results } from "../../app/state/results";
 import { selection } from "../../app/state/viewState";
 import type { Results } from "../list";
-import type { StageStep } from "../tourStep";
+import { ofPicked, type StageStep } from "../tourStep";
 
 const LONG_PX = 60;
 
@@ -11,35 +11,27 @@ export default [
     title: "Straight edges",
     text: "Everything begins with edgels linked into straight segments. A roof edge is rarely found whole in every view, and the longest segments need not be roofs.",
     question: `Pick a segment at the edge of a roof, longer than ${LONG_PX} pixels.`,
-    answer: () => {
-      const { length, facet } = pickedSegment();
-      return `${length.toFixed(0)} px, at a side of facet ${facet} of the finished model. One photograph alone cannot tell it from a kerb: that takes the other views.`;
-    },
-    hint: () => {
-      const { length, facet } = pickedSegment();
-      if (length === 0) {
-        return null;
-      }
-      return facet === null
-        ? `${length.toFixed(0)} px long, but no facet of the model has it as a side: kerbs, paths and shadows are straight, too.`
-        : `It is at a side of facet ${facet}, but ${length.toFixed(0)} px long: look for a longer one.`;
-    },
-    isFound: () => {
-      const { length, facet } = pickedSegment();
-      return facet !== null && length > LONG_PX;
-    },
+    ...ofPicked(pickedSegment, {
+      answer: ({ length, facet }) =>
+        `${length.toFixed(0)} px, at a side of facet ${facet} of the finished model. One photograph alone cannot tell it from a kerb: that takes the other views.`,
+      hint: ({ length, facet }) =>
+        facet === null
+          ? `${length.toFixed(0)} px long, but no facet of the model has it as a side: kerbs, paths and shadows are straight, too.`
+          : `It is at a side of facet ${facet}, but ${length.toFixed(0)} px long: look for a longer one.`,
+      isFound: ({ length, facet }) => facet !== null && length > LONG_PX,
+    }),
   },
 ] satisfies readonly StageStep[];
 
-/** Of the picked segment; no length where none is picked. */
-function pickedSegment(): { length: number; facet: number | null } {
+/** Of the picked segment; null where none is picked. */
+function pickedSegment() {
   const picked = selection.value;
   return picked?.kind === "segment"
     ? {
         length: segmentLength(results.value, picked.view, picked.index),
         facet: facetOfSegment(results.value, picked.view, picked.index),
       }
-    : { length: 0, facet: null };
+    : null;
 }
 
 /** Length of a segment in its photograph, pixels. */
