@@ -66,9 +66,8 @@ function triangulate(P, x, Q, y) {
   },
   formProblem: (answer) => vectorProblem(answer, 3, "point"),
   isSame: (a, b) => distance(a, b) < 1e-5 * (1 + norm(a)),
-  mistakes: [
-    {
-      name: "half a pixel",
+  mistakes: {
+    "half a pixel": {
       says: "The point is where it would be if the images were shifted by half a pixel. The centre of the first pixel is (0.5, 0.5), in images and projections alike: nothing is to be added.",
       variants: [0.5, -0.5].map(
         (by) =>
@@ -76,25 +75,21 @@ function triangulate(P, x, Q, y) {
             triangulated(p, shifted(x, by), q, shifted(y, by)),
       ),
     },
-    {
-      name: "x and y exchanged",
+    "x and y exchanged": {
       says: "u belongs to the first row of P and v to the second; they have changed places.",
       variants: [(p, x, q, y) => triangulated(p, swapped(x), q, swapped(y))],
     },
-    {
-      name: "wrong sign",
+    "wrong sign": {
       says: "The equations are differences, u p₃ − p₁, not sums: the sign of p₁ and p₂ is wrong.",
       variants: [(p, x, q, y) => triangulated(p, x, q, y, -1)],
     },
-    {
-      name: "views exchanged",
+    "views exchanged": {
       says: "Each image point goes with the projection of its own view: here x is used with P′, and x′ with P.",
       variants: [(p, x, q, y) => triangulated(p, y, q, x)],
     },
-    {
-      name: "sign of the right side",
+    "sign of the right side": {
       says: "The point is mirrored at the origin: with the fourth coordinate 1, the fourth column goes to the other side of the equations and changes its sign.",
       variants: [(...input) => triangulated(...input).map((value) => -value)],
     },
-  ],
+  },
 };
