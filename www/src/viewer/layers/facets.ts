@@ -15,7 +15,7 @@ import { PALETTE } from "../../shared/palette";
 import type { Facet, Vec3 } from "../../shared/records";
 import { opacityOf } from "../scene/certainty";
 import { middleOf } from "../scene/facetPlan";
-import { colouredMesh, type Layer } from "../scene/layer";
+import { BEHIND_LINES, colouredMesh, type Layer } from "../scene/layer";
 import { nameLabels } from "../scene/nameLabels";
 import { partsLayer } from "../scene/partsLayer";
 import { roofTint } from "../scene/roofTint";
@@ -67,8 +67,7 @@ export function facetMesh(
     const tint = [...(tints[i] as Color).toArray(), opacities[i] ?? 1];
     return new Array(positions.length / 3).fill(tint).flat() as number[];
   });
-  const behindLines = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
-  return colouredMesh(triangles.flat(), colours, null, { opacity: OPACITY, ...behindLines });
+  return colouredMesh(triangles.flat(), colours, null, { opacity: OPACITY, ...BEHIND_LINES });
 }
 
 function outlines(facets: readonly Facet[]): LineSegments {

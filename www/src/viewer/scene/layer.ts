@@ -3,7 +3,9 @@ import {
   BufferAttribute,
   BufferGeometry,
   Color,
+  DirectionalLight,
   DoubleSide,
+  HemisphereLight,
   type Intersection,
   type Material,
   Mesh,
@@ -11,6 +13,7 @@ import {
   type MeshBasicMaterialParameters,
   type Object3D,
   Texture,
+  Vector3,
 } from "three";
 import type { Selection } from "../../shared/selection";
 
@@ -35,10 +38,20 @@ export function layerOf(object: Object3D, of: Partial<Omit<Layer, "object">> = {
   };
 }
 
+/** The light of all scenes: the sky's, and a sun's from above. */
+export function daylight(): [HemisphereLight, DirectionalLight] {
+  const sun = new DirectionalLight(0xffffff, 2.2);
+  sun.position.set(-0.6, 1, 0.5);
+  return [new HemisphereLight(0xffffff, 0x8a8580, 1.4), sun];
+}
+
 /** The layer for looking at only: a selection is not of its things. */
 export function unpicked({ object, dispose }: Pick<Layer, "object" | "dispose">): Layer {
   return layerOf(object, { dispose });
 }
+
+/** Behind lines that lie in it: else the two would fight for each pixel. */
+export const BEHIND_LINES = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 } as const;
 
 /** Seen from both sides by one shader: what is transparent would be drawn in two passes, each with its own. */
 export const BOTH_SIDES = { side: DoubleSide, forceSinglePass: true } as const;
@@ -88,6 +101,14 @@ export function colouredMesh(
     geometry,
     new MeshBasicMaterial({ vertexColors: true, ...BOTH_SIDES, transparent: true, ...style }),
   );
+}
+
+/** The corners of each triangle of a mesh, in its own frame. */
+export function trianglesOf(geometry: BufferGeometry): [Vector3, Vector3, Vector3][] {
+  const positions = geometry.getAttribute("position");
+  const count = Math.floor((geometry.index?.count ?? positions.count) / 3);
+  const corner = (i: number) => new Vector3().fromBufferAttribute(positions, geometry.index?.getX(i) ?? i);
+  return Array.from({ length: count }, (_, i) => [corner(3 * i), corner(3 * i + 1), corner(3 * i + 2)]);
 }
 
 /** The corners of the triangles of so many figures of four corners, one after the other. */

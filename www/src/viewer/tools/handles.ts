@@ -18,19 +18,23 @@ const DOT_PX = 11;
 /** Nothing is dragged further, metres: near the horizon a pixel is a field. */
 const FURTHEST_M = 30;
 
+/** Of the canvas, or of its half, CSS pixels. */
+export interface Size {
+  width: number;
+  height: number;
+}
+
 /** The dot at a place of the canvas, in clip coordinates; -1 for none. */
-export function handleAt(
-  at: Vector2,
-  handles: readonly Vector3[],
-  camera: Camera,
-  size: { width: number; height: number },
-): number {
-  const distance = (handle: Vector3) => {
-    const seen = handle.clone().project(camera);
-    return Math.hypot(((seen.x - at.x) * size.width) / 2, ((seen.y - at.y) * size.height) / 2);
-  };
-  const nearest = handles.map((handle, i) => ({ i, d: distance(handle) })).sort((a, b) => a.d - b.d)[0];
+export function handleAt(at: Vector2, handles: readonly Vector3[], camera: Camera, size: Size): number {
+  const away = handles.map((handle, i) => ({ i, d: pixelsAway(handle, at, camera, size) }));
+  const [nearest] = away.sort((a, b) => a.d - b.d);
   return nearest !== undefined && nearest.d <= REACH_PX ? nearest.i : -1;
+}
+
+/** How far from a place of the canvas, in clip coordinates, a point is seen, CSS pixels. */
+export function pixelsAway(point: Vector3, at: Vector2, camera: Camera, size: Size): number {
+  const { x, y } = point.clone().project(camera);
+  return Math.hypot(((x - at.x) * size.width) / 2, ((y - at.y) * size.height) / 2);
 }
 
 /** Where a dot is dragged to: on its level, or above and below it. */
