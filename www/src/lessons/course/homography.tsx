@@ -7,6 +7,7 @@ import {
   Dot,
   Drawing,
   Handle,
+  inMetres,
   Label,
   Line,
   Plot,
@@ -97,11 +98,8 @@ const warped = (angle: number) => {
   return warpedWindow(shot(1).picture, planeHomography(FIRST, SECOND, n, d), [x, y], size);
 };
 
-const SECTION = { width: 320, height: 250, scale: 16, x: 70, y: 190 } as const;
-const inSection = (y: number, z: number): Vec2 => [
-  SECTION.x + SECTION.scale * (y + 4),
-  SECTION.y - SECTION.scale * (z - 5),
-];
+const SECTION = inMetres(320, 250, 16, [70, 190]);
+const inSection = (y: number, z: number): Vec2 => SECTION.at(y + 4, z - 5);
 const FAN_M = 9;
 
 /** The roof cut across, with the half-plane that is tried. */

@@ -3,7 +3,20 @@ import { computed, signal } from "@preact/signals";
 import { counted } from "../../app/parts/counted";
 import { add, clamp, DEGREE } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Bar, Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Shape, Slider } from "../parts/draw";
+import {
+  Bar,
+  Curve,
+  Dot,
+  Drawing,
+  Grey,
+  Handle,
+  inMetres,
+  Label,
+  Line,
+  Plot,
+  Shape,
+  Slider,
+} from "../parts/draw";
 import { type Lesson, onScene } from "../parts/lesson";
 import { degrees, metres, num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
@@ -145,8 +158,8 @@ function distanceToRay({ view, through }: Ray, [y, z]: Vec2): number {
 }
 const supporters = (at: Vec2) =>
   new Set(RAYS.filter((ray) => distanceToRay(ray, at) < TOLERANCE_M).map(({ view }) => view));
-const CROSS = { width: 480, height: 330, scale: 21, x: 240, y: 285 } as const;
-const inCross = ([y, z]: Vec2): Vec2 => [CROSS.x + CROSS.scale * y, CROSS.y - CROSS.scale * z];
+const CROSS = inMetres(480, 330, 21, [240, 285]);
+const inCross = (at: Vec2): Vec2 => CROSS.at(...at);
 const VIEW_CLASS = ["s1", "s2", "s3", "s4", "s5", "s7"] as const;
 
 /** The parts of a ray between two heights of the drawing. */
@@ -188,10 +201,10 @@ function ClusterFigure({ isRevealed }: { isRevealed: boolean }) {
         says={`${counted(own.size, "views")}, ${metres(probe.value[1])} high`}
         value={own.size}
         of={probe}
-        to={([x, y]): Vec2 => [
-          clamp((x - CROSS.x) / CROSS.scale, -10, 10),
-          clamp((CROSS.y - y) / CROSS.scale, -1, 12),
-        ]}
+        to={(at): Vec2 => {
+          const [y, z] = CROSS.place(at);
+          return [clamp(y, -10, 10), clamp(z, -1, 12)];
+        }}
       />
     </Drawing>
   );

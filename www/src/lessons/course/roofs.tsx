@@ -1,8 +1,8 @@
 /** Lesson 8: how half-planes become the faces of a roof. */
-import { signal } from "@preact/signals";
+import { type Signal, signal } from "@preact/signals";
 import { clamp, DEGREE, planArea, rectangle } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Dot, Drawing, Handle, Label, Line, Shape, Slider } from "../parts/draw";
+import { Dot, Drawing, Handle, inMetres, Label, Line, Shape, Slider } from "../parts/draw";
 import { type Lesson, onScene } from "../parts/lesson";
 import { degrees, metres, num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
@@ -10,64 +10,59 @@ import { facetOf, heightOf, PLAN, ridgeOf, SIDES, type SideName } from "../toy/r
 
 const south = signal(30 * DEGREE);
 const north = signal(45 * DEGREE);
-const CUT = { width: 480, height: 300, scale: 34, x: 104, y: 210 } as const;
-const inCut = (across: number, z: number): Vec2 => [
-  CUT.x + CUT.scale * across,
-  CUT.y - CUT.scale * (z - PLAN.eave),
-];
+const CUT = inMetres(480, 300, 34, [104, 210]);
+const inCut = (across: number, z: number): Vec2 => CUT.at(across, z - PLAN.eave);
 const ACROSS = 2 * PLAN.width;
 const ARM_M = 7;
 
 function RidgeFigure({ isRevealed }: { isRevealed: boolean }) {
   const { inwards: at, z } = ridgeOf(south.value, north.value);
-  const arm = (foot: number, angle: number, sign: 1 | -1): Vec2 =>
-    inCut(foot + sign * ARM_M * Math.cos(angle), PLAN.eave + ARM_M * Math.sin(angle));
-  const [ends, endn] = [arm(0, south.value, 1), arm(ACROSS, north.value, -1)];
-  const [feet, footn] = [inCut(0, PLAN.eave), inCut(ACROSS, PLAN.eave)];
+  const ridge = isRevealed ? inCut(at, z) : null;
   return (
     <Drawing width={CUT.width} height={CUT.height} label="Two half-planes from their eaves, cut across">
-      <Line from={feet} to={inCut(0, 3)} class="rule" />
-      <Line from={footn} to={inCut(ACROSS, 3)} class="rule" />
-      {isRevealed ? (
-        <>
-          <Line from={feet} to={ends} class="s6 dashed" />
-          <Line from={footn} to={endn} class="s6 dashed" />
-          <Line from={feet} to={inCut(at, z)} class="s4 thick" />
-          <Line from={footn} to={inCut(at, z)} class="s4 thick" />
-          <Dot at={inCut(at, z)} class="s4" />
-          <Label at={inCut(at, z)} dy={-12} anchor="middle" class="s4" text={metres(z)} />
-          <Handle
-            at={ends}
-            class="s6"
-            label="Slope of the south half-plane"
-            says={degrees(south.value)}
-            value={south.value / DEGREE}
-            of={south}
-            to={([x, y]) => clamp(Math.atan2(feet[1] - y, x - feet[0]), 8 * DEGREE, 70 * DEGREE)}
-          />
-          <Handle
-            at={endn}
-            class="s6"
-            label="Slope of the north half-plane"
-            says={degrees(north.value)}
-            value={north.value / DEGREE}
-            of={north}
-            to={([x, y]) => clamp(Math.atan2(footn[1] - y, footn[0] - x), 8 * DEGREE, 70 * DEGREE)}
-          />
-        </>
+      <Eave side="south" of={south} ridge={ridge} />
+      <Eave side="north" of={north} ridge={ridge} />
+      {ridge !== null && <Dot at={ridge} class="s4" />}
+      {ridge !== null && <Label at={ridge} dy={-12} anchor="middle" class="s4" text={metres(z)} />}
+    </Drawing>
+  );
+}
+
+/** A wall with its half-plane: a stump of it, or all of it where the ridge is known. */
+function Eave({ side, of, ridge }: { side: "south" | "north"; of: Signal<number>; ridge: Vec2 | null }) {
+  const [across, sign] = side === "south" ? [0, 1] : [ACROSS, -1];
+  const foot = inCut(across, PLAN.eave);
+  const along = (m: number) =>
+    inCut(across + sign * m * Math.cos(of.value), PLAN.eave + m * Math.sin(of.value));
+  return (
+    <>
+      <Line from={foot} to={inCut(across, 3)} class="rule" />
+      {ridge === null ? (
+        <Line from={foot} to={along(1.6 / Math.cos(of.value))} class="s6 thick" />
       ) : (
         <>
-          <Line from={feet} to={inCut(1.6, PLAN.eave + 1.6 * Math.tan(south.value))} class="s6 thick" />
-          <Line
-            from={footn}
-            to={inCut(ACROSS - 1.6, PLAN.eave + 1.6 * Math.tan(north.value))}
-            class="s6 thick"
+          <Line from={foot} to={along(ARM_M)} class="s6 dashed" />
+          <Line from={foot} to={ridge} class="s4 thick" />
+          <Handle
+            at={along(ARM_M)}
+            class="s6"
+            label={`Slope of the ${side} half-plane`}
+            says={degrees(of.value)}
+            value={of.value / DEGREE}
+            of={of}
+            to={([x, y]) => clamp(Math.atan2(foot[1] - y, sign * (x - foot[0])), 8 * DEGREE, 70 * DEGREE)}
           />
         </>
       )}
-      <Label at={feet} dx={-10} dy={-8} anchor="end" class="s6" text={degrees(south.value)} />
-      <Label at={footn} dx={10} dy={-8} class="s6" text={degrees(north.value)} />
-    </Drawing>
+      <Label
+        at={foot}
+        dx={-10 * sign}
+        dy={-8}
+        anchor={side === "south" ? "end" : "start"}
+        class="s6"
+        text={degrees(of.value)}
+      />
+    </>
   );
 }
 
@@ -77,11 +72,8 @@ const slopes = signal<Record<SideName, number | null>>({
   north: 35 * DEGREE,
   west: 50 * DEGREE,
 });
-const VIEW = { width: 480, height: 300, scale: 24 } as const;
-const inPlan = ([x, y]: readonly [number, number]): Vec2 => [
-  VIEW.width / 2 + VIEW.scale * x,
-  VIEW.height / 2 - VIEW.scale * y,
-];
+const VIEW = inMetres(480, 300, 24, [240, 150]);
+const inPlan = ([x, y]: readonly [number, number]): Vec2 => VIEW.at(x, y);
 const slopeText = (side: SideName) => {
   const own = slopes.value[side];
   return own === null ? "no half-plane" : degrees(own);

@@ -4,7 +4,7 @@ import type { ComponentChildren } from "preact";
 import { counted } from "../../app/parts/counted";
 import { clamp, ellipseOf, type Mat, norm, sub } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
-import { Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider } from "../parts/draw";
+import { Curve, Dot, Drawing, Handle, inMetres, Label, Line, Plot, Slider } from "../parts/draw";
 import { type Lesson, onScene } from "../parts/lesson";
 import { metres, num, pixels } from "../parts/say";
 import { ImagePane, Space, seen } from "../parts/scene";
@@ -84,11 +84,9 @@ const sigmasOf = (cameras: readonly Camera[], sigma = SIGMA): { x: number; z: nu
 };
 const sigmaZ = (B: number) => sigmasOf(strip(B, 2)).z;
 
-const SIDE = { width: 480, height: 330, ground: 250, scale: 5.4 } as const;
-const inSide = (x: number, z: number): Vec2 => [
-  SIDE.width / 2 + SIDE.scale * x,
-  SIDE.ground - SIDE.scale * z,
-];
+const GROUND_PX = 250;
+const SIDE = inMetres(480, 330, 5.4, [240, GROUND_PX]);
+const inSide = SIDE.at;
 
 /** The plane through the baseline, from the side: cameras, rays and the ellipse of the point, enlarged. */
 function FromSide(props: {
@@ -139,7 +137,7 @@ function BaselineFigure({ isRevealed }: { isRevealed: boolean }) {
         text={`= ${metres(B, 0)}`}
       />
       <Label
-        at={[SIDE.width - 6, SIDE.ground]}
+        at={[SIDE.width - 6, GROUND_PX]}
         dy={30}
         anchor="end"
         class="s7"
@@ -153,7 +151,7 @@ function BaselineFigure({ isRevealed }: { isRevealed: boolean }) {
           says={`baseline ${metres(B, 0)}`}
           step={SIDE.scale / 2}
           of={baseline}
-          to={([x]) => clamp(Math.round((2 * (x - SIDE.width / 2)) / SIDE.scale), 3, 70)}
+          to={(at) => clamp(Math.round(2 * SIDE.place(at)[0]), 3, 70)}
         />
       )}
     </FromSide>

@@ -50,6 +50,17 @@ export function Drawing({
   );
 }
 
+/** A drawing in metres, upwards from a place of it: its size, where a place is drawn, and which place that is. */
+export function inMetres(width: number, height: number, scale: number, [x0, y0]: Vec2) {
+  return {
+    width,
+    height,
+    scale,
+    at: (x: number, y: number): Vec2 => [x0 + scale * x, y0 - scale * y],
+    place: ([px, py]: Vec2): Vec2 => [(px - x0) / scale, (y0 - py) / scale],
+  };
+}
+
 /** Text in a drawing, with an edge of paper so that lines do not cross it; `dx` and `dy` in CSS pixels. */
 export function Label(props: {
   at: Vec2;
