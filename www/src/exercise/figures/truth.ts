@@ -2,6 +2,7 @@
  * What is true of the demo scene: the roofs from which its photographs were rendered (`demoTruth.json`, by scripts/demoTruth.mjs), and
  * which of them an image line, a 3D line or a facet shows. Metres, in the scene's local frame; pixels.
  */
+import { lineAt, segmentAt } from "../../shared/flatArrays";
 import { add, cross, DEGREE, distance2, dot, isInside, mix3, scaled, sub, unit } from "../../shared/linear";
 import type { Side, ViewInfo } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
@@ -53,10 +54,7 @@ export function imageIn(view: ViewInfo, [x, y, z]: Point): Place {
 
 /** A segment that a view was found to have. */
 export function segmentOf({ results }: Figure, view: number, index: number): Stretch | null {
-  const ends = results.segments[view]?.subarray(4 * index, 4 * index + 4);
-  return ends?.length === 4
-    ? ([[...ends.subarray(0, 2)], [...ends.subarray(2, 4)]] as unknown as Stretch)
-    : null;
+  return segmentAt(results.segments[view], index);
 }
 
 /** How a stretch lies to a line: the largest distance of its ends, and how much of it lies beside the line. */
@@ -93,10 +91,7 @@ export function shows(edge: RoofEdge, view: ViewInfo, stretch: Stretch): boolean
 
 /** A 3D line that was found. */
 export function lineOf({ results }: Figure, index: number): readonly [Point, Point] | null {
-  const ends = results.lines?.subarray(6 * index, 6 * index + 6);
-  return ends?.length === 6
-    ? ([[...ends.subarray(0, 3)], [...ends.subarray(3, 6)]] as unknown as [Point, Point])
-    : null;
+  return lineAt(results.lines, index);
 }
 
 /** The edge of a roof along which a 3D line runs. */

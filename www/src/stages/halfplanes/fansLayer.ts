@@ -1,6 +1,6 @@
 /** Half-planes as fans: a strip from the 3D line into the half-plane, fading away from the line. */
 import { BufferGeometry, LineBasicMaterial, LineSegments, Vector3 } from "three";
-import { LINE_STRIDE } from "../../shared/flatArrays";
+import { LINE_STRIDE, lineAt } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import { type HalfPlane, isRejected, type Side, type SideRecord, type Vec3 } from "../../shared/records";
 import { fanRing, fanWidth } from "../../viewer/scene/fanRing";
@@ -75,9 +75,7 @@ function rejectedLines(
   lines: Float64Array,
 ): LineSegments<BufferGeometry, LineBasicMaterial> {
   const points = sides.flatMap(({ line, side }) => {
-    const at = line * LINE_STRIDE;
-    const p0 = new Vector3().fromArray(lines, at);
-    const p1 = new Vector3().fromArray(lines, at + 3);
+    const [p0, p1] = (lineAt(lines, line) ?? []).map((end) => new Vector3(...end)) as [Vector3, Vector3];
     const left = new Vector3(p0.y - p1.y, p1.x - p0.x, 0).normalize();
     const away = left.multiplyScalar(side === "left" ? REJECTED_OFFSET_M : -REJECTED_OFFSET_M);
     return [p0.add(away), p1.add(away)];

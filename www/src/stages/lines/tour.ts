@@ -1,7 +1,7 @@
 /** The tour: lines grow. */
 import { results } from "../../app/state/results";
 import { beforeGrowing, selection, showBeforeGrowing } from "../../app/state/viewState";
-import { LINE_STRIDE, STRETCH_STRIDE } from "../../shared/flatArrays";
+import { lengthOf, lineAt, STRETCH_STRIDE } from "../../shared/flatArrays";
 import { pickedIndex } from "../../shared/selection";
 import type { Results } from "../list";
 import { ofPicked, type StageStep } from "../tourStep";
@@ -39,17 +39,10 @@ export function growthOf(
   { lines, stretches }: Pick<Results, "lines" | "stretches">,
   line: number,
 ): { before: number; after: number } {
-  const own = stretches ?? new Float64Array();
-  let before = 0;
-  for (let at = 0; at < own.length; at += STRETCH_STRIDE) {
-    if (own[at] === line) {
-      before = Math.max(before, lengthAt(own, at + 1));
-    }
-  }
-  return { before, after: lines === null ? 0 : lengthAt(lines, line * LINE_STRIDE) };
-}
-
-function lengthAt(numbers: Float64Array, at: number): number {
-  const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0] = numbers.subarray(at, at + LINE_STRIDE);
-  return Math.hypot(d - a, e - b, f - c);
+  const count = (stretches?.length ?? 0) / STRETCH_STRIDE;
+  const own = Array.from({ length: count }, (_, i) => i).filter(
+    (i) => stretches?.[i * STRETCH_STRIDE] === line,
+  );
+  const lengths = own.map((i) => lengthOf(lineAt(stretches, i, STRETCH_STRIDE, 1)));
+  return { before: Math.max(0, ...lengths), after: lengthOf(lineAt(lines, line)) };
 }

@@ -1,6 +1,7 @@
 /** The tour: straight edges. */
 import { results } from "../../app/state/results";
 import { selection } from "../../app/state/viewState";
+import { lengthOf, segmentAt } from "../../shared/flatArrays";
 import type { Results } from "../list";
 import { ofPicked, type StageStep } from "../tourStep";
 
@@ -36,8 +37,7 @@ function pickedSegment() {
 
 /** Length of a segment in its photograph, pixels. */
 export function segmentLength({ segments }: Pick<Results, "segments">, view: number, index: number): number {
-  const [x0 = 0, y0 = 0, x1 = 0, y1 = 0] = segments[view]?.subarray(4 * index, 4 * index + 4) ?? [];
-  return Math.hypot(x1 - x0, y1 - y0);
+  return lengthOf(segmentAt(segments[view], index));
 }
 
 /** The facet that a segment shows a side of; null where there is none. */
