@@ -1,6 +1,6 @@
 /** The angle of a half-plane about its line: theta of B99 4.1. */
 import { add, cross, DEGREE, dot, scaled, sub, unit } from "../../shared/linear";
-import { type FunctionExercise, numberProblem } from "../judging/judge";
+import { functionExercise, numberProblem } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, plantedPoint } from "../judging/random";
 
@@ -19,8 +19,7 @@ function angle(p: Vector, q: Vector, n: Vector): number {
 /** The steepest slope of a plane, radians. */
 const slope = (n: Vector) => Math.acos(Math.min(1, Math.abs(n[2] ?? 0)));
 
-export const angleOfPlane: FunctionExercise<Input, number> = {
-  kind: "function",
+export const angleOfPlane = functionExercise<Input, number>({
   name: "angleOfPlane",
   title: "The angle of a half-plane",
   lesson: "roofs",
@@ -87,4 +86,4 @@ function angleOfPlane(p, q, n) {
       ],
     },
   },
-};
+});

@@ -1,5 +1,5 @@
 /** The description length of a region: what W96 3.3 minimises. */
-import { type FunctionExercise, numberProblem } from "../judging/judge";
+import { functionExercise, numberProblem } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, normal } from "../judging/random";
 
@@ -17,8 +17,7 @@ function length(n: number, squares: number, parameters = Math.log2(n)): number {
   return (n / 2) * Math.log2(E2PI * squares) + parameters;
 }
 
-export const descriptionLength: FunctionExercise<Input, number> = {
-  kind: "function",
+export const descriptionLength = functionExercise<Input, number>({
   name: "descriptionLength",
   title: "The description length of a region",
   lesson: "object-space",
@@ -90,4 +89,4 @@ function descriptionLength(values) {
       ],
     },
   },
-};
+});

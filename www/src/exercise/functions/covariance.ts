@@ -1,6 +1,6 @@
 /** How well a point is known that two views show: B99 figure 9, "accuracy against the number of views". */
 import { dot, inverse, type Mat, sum, times, transpose } from "../../shared/linear";
-import { type FunctionExercise, matrixProblem } from "../judging/judge";
+import { functionExercise, matrixProblem } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, plantedCamera, plantedPoint } from "../judging/random";
 
@@ -26,8 +26,7 @@ function covariance(projections: readonly Mat[], x: Vector, sigma: number): Mat 
   return scaled(inverse(information(projections, x)), sigma ** 2);
 }
 
-export const covarianceOfPoint: FunctionExercise<Input, Mat> = {
-  kind: "function",
+export const covarianceOfPoint = functionExercise<Input, Mat>({
   name: "covarianceOfPoint",
   title: "How well a point is known",
   lesson: "triangulation",
@@ -123,4 +122,4 @@ function covarianceOfPoint(Ps, X, sigma) {
       ],
     },
   },
-};
+});

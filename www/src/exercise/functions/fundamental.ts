@@ -1,6 +1,6 @@
 /** F from two projections, as every epipolar beam of B99 3.1 needs it. */
 import { apply, crossMatrix, type Mat, times, transpose } from "../../shared/linear";
-import { type FunctionExercise, matrixProblem } from "../judging/judge";
+import { functionExercise, matrixProblem } from "../judging/judge";
 import { centreOf, fundamental, isSameUpToScale, pseudoInverse } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
@@ -8,8 +8,7 @@ type Input = readonly [p: Mat, q: Mat];
 
 const POINTS = 10;
 
-export const fundamentalFromProjections: FunctionExercise<Input, Mat> = {
-  kind: "function",
+export const fundamentalFromProjections = functionExercise<Input, Mat>({
   name: "fundamentalFromProjections",
   title: "The fundamental matrix of two views",
   lesson: "epipolar",
@@ -102,4 +101,4 @@ function fundamentalFromProjections(P, Q) {
       ],
     },
   },
-};
+});

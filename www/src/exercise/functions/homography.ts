@@ -12,7 +12,7 @@ import {
   times,
   transpose,
 } from "../../shared/linear";
-import { type FunctionExercise, matrixProblem } from "../judging/judge";
+import { functionExercise, matrixProblem } from "../judging/judge";
 import { dehomogenised, distance, isSameUpToScale, type Vector } from "../judging/linear";
 import { between, plantedCamera } from "../judging/random";
 
@@ -34,8 +34,7 @@ function shift(by: number): Mat {
   ];
 }
 
-export const homographyOfPlane: FunctionExercise<Input, Mat> = {
-  kind: "function",
+export const homographyOfPlane = functionExercise<Input, Mat>({
   name: "homographyOfPlane",
   title: "The homography of a plane",
   lesson: "homography",
@@ -127,4 +126,4 @@ function homographyOfPlane(K, L, R, t, n, d) {
       ]),
     },
   },
-};
+});

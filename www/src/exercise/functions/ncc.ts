@@ -1,6 +1,6 @@
 /** Normalised cross-correlation, by which B99 3.1 compares windows. */
 import { dot } from "../../shared/linear";
-import { described, type FunctionExercise } from "../judging/judge";
+import { described, functionExercise } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, normal, type Random } from "../judging/random";
 
@@ -30,8 +30,7 @@ function direction(random: Random, others: readonly Vector[]): number[] {
   return left.map((value) => value / size);
 }
 
-export const ncc: FunctionExercise<Input, number> = {
-  kind: "function",
+export const ncc = functionExercise<Input, number>({
   name: "ncc",
   title: "Normalised cross-correlation",
   lesson: "correlation",
@@ -131,7 +130,7 @@ function ncc(a, b) {
       ],
     },
   },
-};
+});
 
 function quotient(below: (u: Vector, v: Vector) => number): (a: Vector, b: Vector) => number {
   return (a, b) => {

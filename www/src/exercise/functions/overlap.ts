@@ -1,5 +1,5 @@
 /** Do two stretches of a line have a part in common? The weak constraint of the epipolar beam, B99 3.1. */
-import { type FunctionExercise, numberProblem } from "../judging/judge";
+import { functionExercise, numberProblem } from "../judging/judge";
 import { between } from "../judging/random";
 
 type Interval = readonly [number, number];
@@ -14,8 +14,7 @@ function overlap(a: Interval, b: Interval): number {
   return Math.min(p[1], q[1]) - Math.max(p[0], q[0]);
 }
 
-export const signedOverlap: FunctionExercise<Input, number> = {
-  kind: "function",
+export const signedOverlap = functionExercise<Input, number>({
   name: "signedOverlap",
   title: "Overlap within an epipolar beam",
   lesson: "epipolar",
@@ -76,4 +75,4 @@ function signedOverlap(a, b) {
       ],
     },
   },
-};
+});

@@ -1,6 +1,6 @@
 /** New lines where two planes meet: B99 4.2. */
 import { add, apply, cross, dot, inverse, norm, scaled, sub, unit } from "../../shared/linear";
-import { described, type FunctionExercise, isVector } from "../judging/judge";
+import { described, functionExercise, isVector } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, plantedPoint, type Random } from "../judging/random";
 
@@ -27,8 +27,7 @@ function distance(point: Vector, line: Line): number {
   return norm(cross(sub(point, line.point), unit(line.direction)));
 }
 
-export const lineFromPlanes: FunctionExercise<Input, Line> = {
-  kind: "function",
+export const lineFromPlanes = functionExercise<Input, Line>({
   name: "lineFromPlanes",
   title: "The line where two planes meet",
   lesson: "lines-in-space",
@@ -113,4 +112,4 @@ function lineFromPlanes(n, d, m, e) {
       variants: [(n, d, m, e) => meet(n, e, m, d)],
     },
   },
-};
+});

@@ -1,5 +1,5 @@
 /** From evidence to a probability: the statistical foundation that B99 5 asks for. */
-import { type FunctionExercise, numberProblem } from "../judging/judge";
+import { functionExercise, numberProblem } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between } from "../judging/random";
 
@@ -9,8 +9,7 @@ const total = (nats: Vector) => nats.reduce((all, value) => all + value, 0);
 const logOdds = (p: number) => Math.log(p / (1 - p));
 const probability = (odds: number) => odds / (1 + odds);
 
-export const posterior: FunctionExercise<Input, number> = {
-  kind: "function",
+export const posterior = functionExercise<Input, number>({
   name: "posterior",
   title: "From evidence to a probability",
   lesson: "evidence",
@@ -81,4 +80,4 @@ function posterior(prior, nats) {
       variants: [(prior, nats) => 1 - probability(Math.exp(logOdds(prior) + total(nats)))],
     },
   },
-};
+});

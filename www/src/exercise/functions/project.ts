@@ -1,6 +1,6 @@
 /** Where a camera sees a point: x ≃ P X, on which everything rests (B99 3.1; W96 3.2). */
 import { add, apply, type Mat, norm, scaled, sub, transpose } from "../../shared/linear";
-import { type FunctionExercise, vectorProblem } from "../judging/judge";
+import { functionExercise, vectorProblem } from "../judging/judge";
 import { dehomogenised, distance, type Vector } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
@@ -11,8 +11,7 @@ function imageOf(k: Mat, r: Mat, ray: Vector): Vector {
   return dehomogenised(apply(k, apply(r, ray)));
 }
 
-export const project: FunctionExercise<Input, Vector> = {
-  kind: "function",
+export const project = functionExercise<Input, Vector>({
   name: "project",
   title: "The image of a point",
   lesson: "pinhole",
@@ -85,4 +84,4 @@ function project(K, R, C, X) {
       variants: [(k, r, c, x) => [...imageOf(k, r, sub(x, c))].reverse()],
     },
   },
-};
+});

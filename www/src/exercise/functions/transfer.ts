@@ -1,6 +1,6 @@
 /** A point of two views in a third: what the trifocal tensor does for lines in B99 3.2. */
 import { add, apply, cross, type Mat, norm, transpose } from "../../shared/linear";
-import { type FunctionExercise, vectorProblem } from "../judging/judge";
+import { functionExercise, vectorProblem } from "../judging/judge";
 import { dehomogenised, distance, fundamental, type Vector } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
@@ -18,8 +18,7 @@ function transferred(f: Mat, g: Mat, x: Vector, y: Vector): number[] {
   return meet(apply(f, homogeneous(x)), apply(g, homogeneous(y)));
 }
 
-export const transferPoint: FunctionExercise<Input, Vector> = {
-  kind: "function",
+export const transferPoint = functionExercise<Input, Vector>({
   name: "transferPoint",
   title: "A point in the third view",
   lesson: "trifocal",
@@ -92,4 +91,4 @@ function transferPoint(F, G, x, y) {
       ]),
     },
   },
-};
+});

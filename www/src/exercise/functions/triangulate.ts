@@ -1,6 +1,6 @@
 /** A point in space from two views: what every 3D line of B99 3.2 rests on. */
 import { type Mat, norm } from "../../shared/linear";
-import { type FunctionExercise, vectorProblem } from "../judging/judge";
+import { functionExercise, vectorProblem } from "../judging/judge";
 import { distance, leastSquares, type Vector } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
@@ -25,8 +25,7 @@ function triangulated(p: Mat, x: Vector, q: Mat, y: Vector, sign = 1): Vector {
 const shifted = ([u = 0, v = 0]: Vector, by: number): number[] => [u + by, v + by];
 const swapped = ([u = 0, v = 0]: Vector): number[] => [v, u];
 
-export const triangulate: FunctionExercise<Input, Vector> = {
-  kind: "function",
+export const triangulate = functionExercise<Input, Vector>({
   name: "triangulate",
   title: "A point from two views",
   lesson: "triangulation",
@@ -92,4 +91,4 @@ function triangulate(P, x, Q, y) {
       variants: [(...input) => triangulated(...input).map((value) => -value)],
     },
   },
-};
+});

@@ -36,6 +36,12 @@ export interface FunctionExercise<Input extends readonly unknown[], Answer> exte
   mistakes: Readonly<Record<string, Mistake<Input, Answer>>>;
 }
 
+export function functionExercise<Input extends readonly unknown[], Answer>(
+  of: Omit<FunctionExercise<Input, Answer>, "kind">,
+): FunctionExercise<Input, Answer> {
+  return { kind: "function", ...of };
+}
+
 /** Judges the answers to planted configurations, one each. */
 export function judge<Input extends readonly unknown[], Answer>(
   exercise: FunctionExercise<Input, Answer>,

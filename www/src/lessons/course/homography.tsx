@@ -61,28 +61,31 @@ function PlaneFigure({ isRevealed }: { isRevealed: boolean }) {
   );
 }
 
+/** A function that works once for each of its arguments. */
+function remembered<Args extends readonly unknown[], Made>(make: (...of: Args) => Made) {
+  const known = new Map<string, Made>();
+  return (...of: Args): Made => {
+    const made = known.get(of.join()) ?? make(...of);
+    known.set(of.join(), made);
+    return made;
+  };
+}
+
 /** Of the camera, grey values: without it the faintest texture would correlate as well as the strongest. */
 const NOISE = 4;
 /** How much texture the roof has; pictures are made again for each amount. */
 const texture = signal(1);
-const madeWith = new Map<number, readonly Shot[]>();
 interface Shot {
   camera: Camera;
   picture: ReturnType<typeof photograph>;
 }
-const shots = computed(() => {
-  const own = texture.value;
-  const known = madeWith.get(own);
-  if (known !== undefined) {
-    return known;
-  }
-  const made = [FIRST, SECOND, NEAR, FAR].map((camera) => ({
+const shotsWith = remembered((own: number): readonly Shot[] =>
+  [FIRST, SECOND, NEAR, FAR].map((camera) => ({
     camera,
     picture: photograph(camera, { texture: own, noise: NOISE }),
-  }));
-  madeWith.set(own, made);
-  return made;
-});
+  })),
+);
+const shots = computed(() => shotsWith(texture.value));
 const shot = (i: number) => shots.value[i] as Shot;
 
 const theta = signal(5 * DEGREE);
@@ -193,20 +196,10 @@ const pointsOf = (of: Side): InterestPoint[] =>
 const ANGLES = Array.from({ length: 61 }, (_, i) => (-75 + 2.5 * i) * DEGREE);
 const curves = computed(() => {
   const all = shots.value;
-  const cache = new Map<string, number[]>();
-  return (of: Side, other: number) => {
-    const key = `${of} ${other}`;
-    const known = cache.get(key);
-    if (known !== undefined) {
-      return known;
-    }
+  return remembered((of: Side, other: number) => {
     const points = pointsOf(of);
-    const made = ANGLES.map((angle) =>
-      similarity(all[0] as Shot, all[other] as Shot, SOUTH_EAVE, angle, points),
-    );
-    cache.set(key, made);
-    return made;
-  };
+    return ANGLES.map((angle) => similarity(all[0] as Shot, all[other] as Shot, SOUTH_EAVE, angle, points));
+  });
 });
 const curveOf = (of: Side, other: number) => curves.value(of, other);
 

@@ -1,7 +1,7 @@
 /** Lesson 6: a line in space has four numbers, and its ends are not among them. */
 import { signal } from "@preact/signals";
 import { counted } from "../../app/parts/counted";
-import { clamp, DEGREE, mix3, rectangle, replaced } from "../../shared/linear";
+import { clamp, DEGREE, lineThrough, mix3, rectangle, replaced, times, transpose } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
 import { Bar, Curve, Dot, Handle, Line, Plot, Shape, Slider, Switch } from "../parts/draw";
 import { type Lesson, onScene } from "../parts/lesson";
@@ -200,24 +200,13 @@ function heightSigma(cameras: readonly Camera[], phi: number): number {
     [c, s, 8 + h + tilt],
   ];
   const step = 0.01;
-  let [hh, ht, tt] = [0, 0, 0];
-  for (const camera of cameras) {
-    const own = inView(camera, at(0, 0));
-    const [dx, dy] = [own[1][0] - own[0][0], own[1][1] - own[0][1]];
-    const length = Math.hypot(dx, dy);
+  const slopes = cameras.flatMap((camera) => {
+    const [a, b, c] = lineThrough(...inView(camera, at(0, 0)));
     const away = (moved: Ends3) =>
-      inView(camera, moved).map(([x, y], i) => {
-        const [u, v] = own[i as 0 | 1];
-        return (dx * (y - v) - dy * (x - u)) / length / step;
-      });
-    const [byHeight, byTilt] = [away(at(step, 0)), away(at(0, step))];
-    byHeight.forEach((h, i) => {
-      const t = byTilt[i] as number;
-      hh += h * h;
-      ht += h * t;
-      tt += t * t;
-    });
-  }
+      inView(camera, moved).map(([x, y]) => (a * x + b * y + c) / Math.hypot(a, b) / step);
+    return transpose([away(at(step, 0)), away(at(0, step))]);
+  });
+  const [[hh = 0, ht = 0] = [], [, tt = 0] = []] = times(transpose(slopes), slopes);
   return SIGMA * Math.sqrt(tt / (hh * tt - ht * ht));
 }
 const camerasOf = (of: Strips) => (of === "one" ? ONE_STRIP : TWO_STRIPS);
