@@ -129,6 +129,12 @@ export function ellipseOf(a: number, b: number, d: number): { major: number; min
   };
 }
 
+/** The thing of least distance, of those that are within reach; null where none is. */
+export function nearestOf<T>(all: readonly T[], distance: (one: T) => number, reach: number): T | null {
+  const near = all.map((one) => ({ one, at: distance(one) })).filter(({ at }) => at <= reach);
+  return near.sort((a, b) => a.at - b.at)[0]?.one ?? null;
+}
+
 /** The parameter at which a curve comes nearest to a point, to a 400th of its range. */
 export function nearestParameter(curve: (t: number) => Vec2, from: number, to: number, at: Vec2): number {
   let best = { t: from, by: Number.POSITIVE_INFINITY };

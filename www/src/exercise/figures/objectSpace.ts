@@ -4,7 +4,7 @@ import type { Vec2 } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import { inUnit, kindOf, readQuantity } from "../judging/quantity";
 import { figureExercise, mistakeAmong, type Outcome } from "./judgeFigure";
-import { EDGES, FACES, faceOver, imageIn, type Place, type RoofFace } from "./truth";
+import { EDGES, FACES, faceOver, imageIn, type Place, type RoofEdge, type RoofFace } from "./truth";
 
 const TOLERANCE_DEG = 2;
 
@@ -23,8 +23,8 @@ export function ridgeIn(shown: Figure, plane: number): number | null {
   const { min, max } = window;
   const isIn = ([x = 0, y = 0]: readonly number[]) => x > min[0] && x < max[0] && y > min[1] && y < max[1];
   const ridges = EDGES.filter(({ kind, p0, p1 }) => kind === "ridge" && isIn(p0) && isIn(p1));
-  const length = ({ p0, p1 }: (typeof ridges)[number]) => Math.hypot(p1[0] - p0[0], p1[1] - p0[1]);
-  const [longest] = [...ridges].sort((a, b) => length(b) - length(a));
+  const length = ({ p0, p1 }: RoofEdge) => Math.hypot(p1[0] - p0[0], p1[1] - p0[1]);
+  const [longest] = ridges.sort((a, b) => length(b) - length(a));
   return longest === undefined ? null : azimuthOf(longest.p0, longest.p1);
 }
 

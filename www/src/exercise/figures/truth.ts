@@ -3,7 +3,19 @@
  * which of them an image line, a 3D line or a facet shows. Metres, in the scene's local frame; pixels.
  */
 import { lineAt, segmentAt } from "../../shared/flatArrays";
-import { add, cross, DEGREE, distance2, dot, isInside, mix3, scaled, sub, unit } from "../../shared/linear";
+import {
+  add,
+  cross,
+  DEGREE,
+  distance2,
+  dot,
+  isInside,
+  mix3,
+  nearestOf,
+  scaled,
+  sub,
+  unit,
+} from "../../shared/linear";
 import type { Side, ViewInfo } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import demo from "./demoTruth.json";
@@ -81,7 +93,7 @@ export function distanceFrom(edge: RoofEdge, view: ViewInfo, stretch: Stretch): 
 
 /** The edge of a roof that a stretch of a view shows; null where it shows none. */
 export function edgeShown(view: ViewInfo, stretch: Stretch): RoofEdge | null {
-  return nearest(EDGES, (edge) => distanceFrom(edge, view, stretch), NEAR_PX);
+  return nearestOf(EDGES, (edge) => distanceFrom(edge, view, stretch), NEAR_PX);
 }
 
 /** Whether a stretch of a view shows this edge. */
@@ -97,7 +109,7 @@ export function lineOf({ results }: Figure, index: number): readonly [Point, Poi
 /** The edge of a roof along which a 3D line runs. */
 export function edgeAlong([p, q]: readonly [Point, Point]): RoofEdge | null {
   const flat = ([x, y]: Point): Place => [x, y];
-  return nearest(
+  return nearestOf(
     EDGES,
     (edge) => {
       const { distance, isParallel, share } = apart([flat(p), flat(q)], [flat(edge.p0), flat(edge.p1)]);
@@ -145,9 +157,4 @@ export function faceBeside(
   const across = cross([a, b, c], along);
   const sign = dot(across, outward) < 0 ? -1 : 1;
   return { face, theta: Math.atan2(sign * dot(across, up), sign * dot(across, outward)) / DEGREE };
-}
-
-function nearest<T>(all: readonly T[], distance: (one: T) => number, most: number): T | null {
-  const found = all.map((one) => ({ one, at: distance(one) })).sort((a, b) => a.at - b.at)[0];
-  return found !== undefined && found.at <= most ? found.one : null;
 }

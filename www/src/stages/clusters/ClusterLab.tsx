@@ -6,7 +6,7 @@ import { counted } from "../../app/parts/counted";
 import { degreesOf, grouped } from "../../app/parts/numberText";
 import { PlaneChoice } from "../../app/view/figures/PlaneChoice";
 import { LINE_STRIDE, lineAt } from "../../shared/flatArrays";
-import { boundsOf, mix3, sub } from "../../shared/linear";
+import { boundsOf, mix3, nearestOf, sub } from "../../shared/linear";
 import { category } from "../../shared/palette";
 import type { ClusterTrace, Directions, Vec2 } from "../../shared/records";
 import { pickedIndex, type Selection } from "../../shared/selection";
@@ -73,12 +73,12 @@ function ClusterPlane({ frame, figure, plane, trace }: PlaneProps) {
       onClick={(across, height) => {
         const distance = ([u, v]: Vec2) =>
           Math.hypot((u - across) / (x.max - x.min), (v - height) / (y.max - y.min));
-        figure.act.select(
-          nearest(
-            [...linesOf(lines, trace), ...rejectedOf(plane, trace)],
-            ([one, at]) => distance(at) - (one.kind === "line" ? RING : 0),
-          ),
+        const found = nearestOf(
+          [...linesOf(lines, trace), ...rejectedOf(plane, trace)],
+          ([one, at]) => distance(at) - (one.kind === "line" ? RING : 0),
+          REACH,
         );
+        figure.act.select(found?.[0] ?? null);
       }}
     >
       <clipPath id={clip}>
@@ -163,11 +163,6 @@ function rejectedOf(plane: number, trace: ClusterTrace): Place[] {
 }
 
 type Place = readonly [Selection, Vec2];
-
-function nearest(places: readonly Place[], distance: (place: Place) => number): Selection | null {
-  const near = places.map((place) => ({ place, away: distance(place) })).filter(({ away }) => away < REACH);
-  return near.sort((a, b) => a.away - b.away)[0]?.place[0] ?? null;
-}
 
 /** Where the selected thing lies in this plane; null where it does not. */
 function placeOfSelection(

@@ -9,6 +9,7 @@ import {
   type Vector2,
   Vector3,
 } from "three";
+import { nearestOf } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import { type Layer, layerOf } from "../scene/layer";
 
@@ -26,9 +27,8 @@ export interface Size {
 
 /** The dot at a place of the canvas, in clip coordinates; -1 for none. */
 export function handleAt(at: Vector2, handles: readonly Vector3[], camera: Camera, size: Size): number {
-  const away = handles.map((handle, i) => ({ i, d: pixelsAway(handle, at, camera, size) }));
-  const [nearest] = away.sort((a, b) => a.d - b.d);
-  return nearest !== undefined && nearest.d <= REACH_PX ? nearest.i : -1;
+  const nearest = nearestOf(handles, (handle) => pixelsAway(handle, at, camera, size), REACH_PX);
+  return nearest === null ? -1 : handles.indexOf(nearest);
 }
 
 /** How far from a place of the canvas, in clip coordinates, a point is seen, CSS pixels. */

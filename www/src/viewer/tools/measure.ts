@@ -9,7 +9,7 @@ import {
   type Vector2,
   Vector3,
 } from "three";
-import { areaVector, edgesOf, norm } from "../../shared/linear";
+import { areaVector, edgesOf, nearestOf, norm } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import { type Layer, layerOf } from "../scene/layer";
 import { dots, pixelsAway, type Size } from "./handles";
@@ -58,11 +58,8 @@ export function snapped(
 ): Taken | null {
   const farthest = (seen?.distanceTo(ray.origin) ?? Number.POSITIVE_INFINITY) + HIDDEN_M;
   const nearest = (places: readonly Taken[]): Taken | null => {
-    const near = places.flatMap((place) => {
-      const px = pixelsAway(place.at, at, camera, size);
-      return px <= REACH_PX && place.at.distanceTo(ray.origin) <= farthest ? [{ place, px }] : [];
-    });
-    return near.sort((a, b) => a.px - b.px)[0]?.place ?? null;
+    const before = places.filter((place) => place.at.distanceTo(ray.origin) <= farthest);
+    return nearestOf(before, (place) => pixelsAway(place.at, at, camera, size), REACH_PX);
   };
   const corners = rings.flat().map(({ at, sigma }): Taken => ({ at, on: "corner", sigma }));
   const edges = rings.flatMap((ring) => edgesOf(ring).map((ends) => onEdge(ray, ...ends)));
