@@ -33,7 +33,6 @@ export function taskText(exercise: AnyExercise, seed: number): string {
 
 /** The usual mistakes that an exercise knows. */
 export function mistakesOf(exercise: AnyExercise): readonly NamedMistake[] {
-  return exercise.kind === "function"
-    ? exercise.mistakes.map(({ name, says }) => ({ name, says }))
-    : Object.entries(exercise.mistakes).map(([name, says]) => ({ name, says }));
+  const known: Readonly<Record<string, string | { says: string }>> = exercise.mistakes;
+  return Object.entries(known).map(([name, of]) => ({ name, says: typeof of === "string" ? of : of.says }));
 }

@@ -82,23 +82,23 @@ function ownsKeys({ target, altKey, ctrlKey, metaKey }: KeyboardEvent): boolean 
 function Ways({ lesson: { id, screens }, index }: { lesson: Lesson; index: number }) {
   const place = LESSONS.findIndex((one) => one.id === id);
   const [before, after] = [LESSONS[place - 1], LESSONS[place + 1]];
-  const previous = screens[index - 1];
-  const next = screens[index + 1];
+  const [previous, next] = [screens[index - 1], screens[index + 1]];
+  const contents = { href: CONTENTS, text: "Contents" };
+  const back =
+    previous !== undefined
+      ? { rel: "prev", href: linkTo(id, previous.id), text: "Back" }
+      : before !== undefined
+        ? { href: linkTo(before.id), text: `Lesson ${place}` }
+        : contents;
+  const on =
+    next !== undefined
+      ? { rel: "next", href: linkTo(id, next.id), text: "Next" }
+      : after !== undefined
+        ? { rel: "next", href: linkTo(after.id), text: `Lesson ${place + 2}: ${after.title}` }
+        : contents;
   return (
     <nav class="ways" aria-label="Screens">
-      {previous !== undefined ? (
-        <a class="way" rel="prev" href={linkTo(id, previous.id)}>
-          Back
-        </a>
-      ) : before !== undefined ? (
-        <a class="way" href={linkTo(before.id)}>
-          Lesson {place}
-        </a>
-      ) : (
-        <a class="way" href={CONTENTS}>
-          Contents
-        </a>
-      )}
+      <Way class="way" {...back} />
       <ol>
         {screens.map((screen, i) => (
           <li key={screen.id}>
@@ -113,19 +113,11 @@ function Ways({ lesson: { id, screens }, index }: { lesson: Lesson; index: numbe
           </li>
         ))}
       </ol>
-      {next !== undefined ? (
-        <a class="way next" rel="next" href={linkTo(id, next.id)}>
-          Next
-        </a>
-      ) : after !== undefined ? (
-        <a class="way next" rel="next" href={linkTo(after.id)}>
-          Lesson {place + 2}: {after.title}
-        </a>
-      ) : (
-        <a class="way next" href={CONTENTS}>
-          Contents
-        </a>
-      )}
+      <Way class="way next" {...on} />
     </nav>
   );
+}
+
+function Way({ text, ...of }: { text: string; href: string; rel?: string; class: string }) {
+  return <a {...of}>{text}</a>;
 }

@@ -3,7 +3,7 @@ import { useSignal } from "@preact/signals";
 import { Slider } from "./parts/draw";
 import { Pieces } from "./parts/Formula";
 import type { Prediction } from "./parts/lesson";
-import { num } from "./parts/say";
+import { digitsOf, num } from "./parts/say";
 import { commit, guessOf } from "./progress";
 
 interface Props<P extends Prediction = Prediction> {
@@ -62,17 +62,18 @@ function Choice({ name, predict: { options, right, why } }: Of<"choice">) {
 }
 
 function Estimate({ name, predict }: Of<"estimate">) {
-  const { unit, min, max, step, truth, within, why } = predict;
+  const { unit, range, truth, within, why } = predict;
+  const [min, max, step] = range;
   const guess = guessOf(name);
-  const digits = Math.max(0, Math.ceil(-Math.log10(step)));
+  const digits = digitsOf(step);
   const value = useSignal(guess?.value ?? (min + max) / 2);
   const off = value.value - truth();
   return (
     <>
       <Slider
         label="Your guess"
-        range={[min, max, step]}
-        says={`${num(value.value, digits)} ${unit}`}
+        range={range}
+        suffix={` ${unit}`}
         of={value}
         disabled={guess !== undefined}
       />

@@ -60,6 +60,12 @@ export function apply(a: Mat, v: Vector): number[] {
 
 export const apply3 = (a: Mat, v: Vector): Vec3 => apply(a, v) as unknown as Vec3;
 
+/** a + factor times b. */
+export const sum = (a: Mat, b: Mat, factor = 1): Mat => a.map((row, i) => add(row, b[i] as Vector, factor));
+
+/** a bᵀ */
+export const outer = (a: Vector, b: Vector): Mat => a.map((x) => scaled(b, x));
+
 /** [v]x: the matrix of the cross product with v. */
 export const crossMatrix = ([x = 0, y = 0, z = 0]: Vector): Mat => [
   [0, -z, y],
@@ -121,6 +127,12 @@ export function ellipseOf(a: number, b: number, d: number): { major: number; min
     minor: Math.sqrt(Math.max(0, mean - half)),
     angle: Math.atan2(2 * b, a - d) / 2,
   };
+}
+
+/** The thing of least distance, of those that are within reach; null where none is. */
+export function nearestOf<T>(all: readonly T[], distance: (one: T) => number, reach: number): T | null {
+  const near = all.map((one) => ({ one, at: distance(one) })).filter(({ at }) => at <= reach);
+  return near.sort((a, b) => a.at - b.at)[0]?.one ?? null;
 }
 
 /** The parameter at which a curve comes nearest to a point, to a 400th of its range. */

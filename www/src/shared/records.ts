@@ -14,37 +14,31 @@ export function isRejected({ rejection }: SideRecord): boolean {
 
 type Proposed = Pick<Facet | PlaneGroup, "proposals">;
 
+type KeyOf<Union> = Union extends unknown ? keyof Union : never;
+
+/** What of one source proposed a plane. */
+const proposers =
+  (source: KeyOf<Proposed["proposals"][number]>) =>
+  ({ proposals }: Proposed): number[] =>
+    proposals.flatMap((one: Readonly<Record<string, number>>) => one[source] ?? []);
+
 /** Candidates of W96 that proposed a plane. */
-export function rectanglesOf({ proposals }: Proposed): number[] {
-  return proposals.flatMap((one) => ("rectangle" in one ? [one.rectangle] : []));
-}
-
-/** Planes of dense matching that proposed a plane. */
-export function densePlanesOf({ proposals }: Proposed): number[] {
-  return proposals.flatMap((one) => ("dense_plane" in one ? [one.dense_plane] : []));
-}
-
-/** Sets of coplanar lines that proposed a plane. */
-export function coplanarSetsOf({ proposals }: Proposed): number[] {
-  return proposals.flatMap((one) => ("coplanar_set" in one ? [one.coplanar_set] : []));
-}
-
-/** Planes of corners that proposed a plane. */
-export function cornerPlanesOf({ proposals }: Proposed): number[] {
-  return proposals.flatMap((one) => ("corner_plane" in one ? [one.corner_plane] : []));
-}
+export const rectanglesOf = proposers("rectangle");
+/** Planes of dense matching that did. */
+export const densePlanesOf = proposers("dense_plane");
+/** Sets of coplanar lines that did. */
+export const coplanarSetsOf = proposers("coplanar_set");
+/** Planes of corners that did. */
+export const cornerPlanesOf = proposers("corner_plane");
 
 /** Whether a facet was made from a group: they share a half-plane or a proposal. */
 export function isMadeFrom(
   { half_planes, ...facet }: Pick<Facet, "half_planes" | "proposals">,
   { members, ...group }: Pick<PlaneGroup, "members" | "proposals">,
 ): boolean {
-  const shares = (of: (from: Proposed) => number[]) => of(group).some((one) => of(facet).includes(one));
+  const sources = [rectanglesOf, densePlanesOf, coplanarSetsOf, cornerPlanesOf];
   return (
     members.some(({ half_plane }) => half_plane !== null && half_planes.includes(half_plane)) ||
-    shares(rectanglesOf) ||
-    shares(densePlanesOf) ||
-    shares(coplanarSetsOf) ||
-    shares(cornerPlanesOf)
+    sources.some((of) => of(group).some((one) => of(facet).includes(one)))
   );
 }

@@ -20,6 +20,26 @@ export interface StageStep {
   isFound: () => boolean;
 }
 
+/** What a step says of what is picked: nothing, and it is not found, while there is nothing of that kind. */
+export function ofPicked<Picked>(
+  picked: () => Picked | null,
+  says: {
+    answer(of: Picked): string;
+    hint?(of: Picked): string;
+    isFound(of: Picked): boolean;
+  },
+): Pick<StageStep, "answer" | "hint" | "isFound"> {
+  const asked = <T>(ask: ((of: Picked) => T) | undefined, otherwise: T) => {
+    const of = picked();
+    return of === null || ask === undefined ? otherwise : ask(of);
+  };
+  return {
+    answer: () => asked(says.answer, ""),
+    hint: () => asked<string | null>(says.hint, null),
+    isFound: () => asked(says.isFound, false),
+  };
+}
+
 /** Whether the tour is still at the step of now: the core takes its time to answer. */
 export function stay(): () => boolean {
   const step = tourStep.peek();

@@ -3,7 +3,7 @@ import { Mesh, MeshBasicMaterial, type Object3D, Sphere, SphereGeometry, Texture
 import { PALETTE } from "../shared/palette";
 import { edgeLines } from "./layers/model";
 import { buildGrid } from "./scene/grid";
-import { disposeObject, type Layer, unpicked } from "./scene/layer";
+import { type Layer, layerOf } from "./scene/layer";
 
 export function warmupLayers(): Layer[] {
   return [
@@ -14,5 +14,5 @@ export function warmupLayers(): Layer[] {
 }
 
 function onlySeen(object: Object3D): Layer {
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }

@@ -1,7 +1,7 @@
 /** World points of an orientation with the colours of their photographs. */
 import { BufferAttribute, BufferGeometry, Color, Points, PointsMaterial, Vector3 } from "three";
 import { yUp, zUpGroup } from "./scene/frame";
-import { disposeObject, type Layer, unpicked } from "./scene/layer";
+import { type Layer, layerOf } from "./scene/layer";
 
 const SIZE_PX = 2.5;
 
@@ -22,7 +22,7 @@ export function buildSparsePoints(points: Float32Array, colours: Uint8Array): La
   const material = new PointsMaterial({ size: SIZE_PX, sizeAttenuation: false, vertexColors: true });
   const object = zUpGroup();
   object.add(new Points(geometry, material));
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }
 
 function channel(colours: Uint8Array, at: number): number {

@@ -3,9 +3,7 @@ import {
   BufferAttribute,
   BufferGeometry,
   Color,
-  DirectionalLight,
   DoubleSide,
-  HemisphereLight,
   Mesh,
   MeshBasicMaterial,
   PerspectiveCamera,
@@ -18,7 +16,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
-import { disposeObject } from "./scene/layer";
+import { daylight, disposeObject } from "./scene/layer";
 
 /** What the build wrote of the ground: points of it, row by row of a photograph, in the viewer's frame. */
 export interface PhotographicGround {
@@ -56,7 +54,7 @@ export async function createTurntable(
     new TextureLoader().loadAsync(photographUrl),
   ]);
   const floor = groundMesh(ground, texture, renderer.capabilities.getMaxAnisotropy());
-  scene.add(buildings, floor, new HemisphereLight(0xffffff, 0x8a8580, 1.4), sun());
+  scene.add(buildings, floor, ...daylight());
   const camera = new PerspectiveCamera(FIELD_OF_VIEW_DEG, 1, 1, 1000);
   const controls = new OrbitControls(camera, canvas);
   controls.enablePan = false;
@@ -129,12 +127,6 @@ export async function createTurntable(
       renderer.forceContextLoss();
     },
   };
-}
-
-function sun(): DirectionalLight {
-  const light = new DirectionalLight(0xffffff, 2.2);
-  light.position.set(-0.6, 1, 0.5);
-  return light;
 }
 
 function groundMesh({ cells, corners }: PhotographicGround, texture: Texture, anisotropy: number): Mesh {

@@ -2,8 +2,6 @@
 import {
   Box3,
   Color,
-  DirectionalLight,
-  HemisphereLight,
   type Object3D,
   PerspectiveCamera,
   Plane,
@@ -22,7 +20,7 @@ import { isNearlySame, ROOM, standFor } from "./scene/bounds";
 import { yUp, zUp } from "./scene/frame";
 import { gpuFinished } from "./scene/gpuFence";
 import { buildGrid } from "./scene/grid";
-import type { Layer } from "./scene/layer";
+import { daylight, type Layer } from "./scene/layer";
 import { type LayerRoles, OF_BOTH_HALVES } from "./scene/layerRoles";
 import { clipFromViewer } from "./scene/photoProjection";
 import { clipPlace, drawHalves } from "./scene/splitView";
@@ -86,9 +84,7 @@ export class Viewer {
     this.#onPick = onPick;
     this.#roles = roles;
     this.#colours = colours;
-    const sun = new DirectionalLight(0xffffff, 2.2);
-    sun.position.set(-0.6, 1, 0.5);
-    this.#scene.add(new HemisphereLight(0xffffff, 0x8a8580, 1.4), sun);
+    this.#scene.add(...daylight());
     this.#camera.position.set(40, 50, 60);
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#controls.maxPolarAngle = 0.495 * Math.PI;
@@ -101,10 +97,9 @@ export class Viewer {
     canvas.addEventListener("pointerup", () => this.#dropHandle());
     canvas.addEventListener("pointercancel", () => this.#dropHandle());
     const watch = new PressWatch((at) => this.press(at));
-    canvas.addEventListener("pointerdown", (event) => watch.down(event));
-    canvas.addEventListener("pointermove", (event) => watch.move(event));
-    canvas.addEventListener("pointerup", (event) => watch.up(event));
-    canvas.addEventListener("pointercancel", (event) => watch.cancel(event));
+    for (const what of ["down", "move", "up", "cancel"] as const) {
+      canvas.addEventListener(`pointer${what}`, (event) => watch[what](event));
+    }
     this.#observer = new ResizeObserver(() => void this.#resize());
     this.#observer.observe(canvas);
     this.setTheme(colours);
@@ -415,13 +410,8 @@ export class Viewer {
     if (this.#left === null) {
       this.#renderer.render(this.#scene, this.#camera);
     } else {
-      drawHalves(
-        this.#renderer,
-        this.#scene,
-        this.#camera,
-        this.#objectsOf("left"),
-        this.#objectsOf("right"),
-      );
+      const [left, right] = [this.#objectsOf("left"), this.#objectsOf("right")];
+      drawHalves(this.#renderer, this.#scene, this.#camera, left, right);
     }
   }
 
@@ -444,8 +434,7 @@ export class Viewer {
 
   /** The whole map from the viewer's frame to clip space goes into the projection; the camera itself stands at the origin. */
   #usePhotoCamera(view: ViewInfo): void {
-    const centre = new Vector3(view.center[0], view.center[2], -view.center[1]);
-    const depth = centre.distanceTo(this.#controls.target);
+    const depth = yUp(view.center).distanceTo(this.#controls.target);
     this.#camera.matrixWorldAutoUpdate = false;
     this.#camera.matrixWorld.identity();
     this.#camera.matrixWorldInverse.identity();
@@ -534,8 +523,7 @@ export class Viewer {
     caster.setFromCamera(at, this.#camera);
     if (this.#photo !== null) {
       const far = new Vector3(at.x, at.y, 1).applyMatrix4(this.#camera.projectionMatrixInverse);
-      const [x, y, z] = this.#photo.center;
-      const centre = new Vector3(x, z, -y);
+      const centre = yUp(this.#photo.center);
       caster.set(centre, far.sub(centre).normalize());
     }
     const distance = this.#camera.position.distanceTo(this.#controls.target);

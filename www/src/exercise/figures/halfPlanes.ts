@@ -2,7 +2,7 @@
 import { DEGREE } from "../../shared/linear";
 import type { Side, SideTrace } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
-import { type Asked, type FigureExercise, mistakeAmong, type Outcome } from "./judgeFigure";
+import { type Asked, figureExercise, mistakeAmong, type Outcome } from "./judgeFigure";
 import { edgeAlong, faceBeside, lineOf } from "./truth";
 
 /** What B99 4.4 states of a well textured face, degrees. */
@@ -32,15 +32,13 @@ function thetaOfRoof({ detail, results }: Figure): number | null {
 
 const nameOf = ({ line, side }: Pick<TrueSide, "line" | "side">) => `side:${line}.${side}`;
 
-export const turnToRoof: FigureExercise = {
-  kind: "figure",
+export const turnToRoof = figureExercise({
   name: "turnToRoof",
   title: "The angle of a roof",
   lesson: "roofs",
   source: "B99 4.1, figures 10 to 12",
   text: "Turn the [[half-plane]] until it lies in the roof: within 2° of the true angle, which is all that a well textured face allows.",
   figure: "theta-sweep",
-  asks: { by: "state" },
   begin: async ({ shown }) => {
     const found = trueSides(shown).find(
       ({ theta, best }) => Math.abs(best - theta) < 1 && Math.abs(theta) > 15 && Math.abs(theta) < 40,
@@ -76,7 +74,7 @@ export const turnToRoof: FigureExercise = {
       "The angle has the wrong sign: θ is positive where the half-plane rises away from the line, as from an eave to the ridge.",
     "from the vertical": "This is the angle from the vertical. θ is 0 where the half-plane is level.",
   },
-};
+});
 
 /** Sim(θ) of the side at an angle, radians. */
 function simAt({ curve: { thetas, similarity } }: SideTrace, theta: number): number {
@@ -117,15 +115,13 @@ async function sideWithFall({ shown, ask }: Asked): Promise<Partial<{ select: st
   return {};
 }
 
-export const halfOfPeak: FigureExercise = {
-  kind: "figure",
+export const halfOfPeak = figureExercise({
   name: "halfOfPeak",
   title: "How sharp a peak is",
   lesson: "homography",
   source: "B99 4.1, figures 12 to 14",
   text: "The [[homography|homographies]] H(θ) lay the views onto each other only where the plane is right. Turn the [[half-plane]] beyond the peak, upwards, to where Sim(θ) has first fallen to half of it: a sharp peak is a well known angle.",
   figure: "theta-sweep",
-  asks: { by: "state" },
   begin: sideWithFall,
   judge: async ({ shown }): Promise<Outcome> => {
     const { side, theta } = shown.detail;
@@ -162,4 +158,4 @@ export const halfOfPeak: FigureExercise = {
     "at the bottom": "Here Sim(θ) is lowest. Half of its peak is higher.",
     "half of the angle": "This is half of the angle of the peak. It is Sim(θ) that is to be half as high.",
   },
-};
+});

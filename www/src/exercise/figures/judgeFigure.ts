@@ -45,6 +45,11 @@ export interface FigureExercise extends About {
   mistakes: Readonly<Record<string, string>>;
 }
 
+/** An exercise that asks for nothing beside the figure's state, where it does not say otherwise. */
+export function figureExercise(of: Omit<FigureExercise, "kind" | "asks"> & { asks?: Asks }): FigureExercise {
+  return { kind: "figure", asks: { by: "state" }, ...of };
+}
+
 /** The first of some mistakes that was made; null where none was. */
 export function mistakeAmong(made: Readonly<Record<string, boolean>>): Outcome | null {
   const mistake = Object.keys(made).find((name) => made[name]);

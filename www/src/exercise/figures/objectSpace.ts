@@ -3,8 +3,8 @@ import { boundsOf, DEGREE, isInside } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import { inUnit, kindOf, readQuantity } from "../judging/quantity";
-import { type FigureExercise, mistakeAmong, type Outcome } from "./judgeFigure";
-import { EDGES, FACES, faceOver, imageIn, type Place, type RoofFace } from "./truth";
+import { figureExercise, mistakeAmong, type Outcome } from "./judgeFigure";
+import { EDGES, FACES, faceOver, imageIn, type Place, type RoofEdge, type RoofFace } from "./truth";
 
 const TOLERANCE_DEG = 2;
 
@@ -23,8 +23,8 @@ export function ridgeIn(shown: Figure, plane: number): number | null {
   const { min, max } = window;
   const isIn = ([x = 0, y = 0]: readonly number[]) => x > min[0] && x < max[0] && y > min[1] && y < max[1];
   const ridges = EDGES.filter(({ kind, p0, p1 }) => kind === "ridge" && isIn(p0) && isIn(p1));
-  const length = ({ p0, p1 }: (typeof ridges)[number]) => Math.hypot(p1[0] - p0[0], p1[1] - p0[1]);
-  const [longest] = [...ridges].sort((a, b) => length(b) - length(a));
+  const length = ({ p0, p1 }: RoofEdge) => Math.hypot(p1[0] - p0[0], p1[1] - p0[1]);
+  const [longest] = ridges.sort((a, b) => length(b) - length(a));
   return longest === undefined ? null : azimuthOf(longest.p0, longest.p1);
 }
 
@@ -41,8 +41,7 @@ function clearWindows(shown: Figure): number[] {
   });
 }
 
-export const ridgeDirection: FigureExercise = {
-  kind: "figure",
+export const ridgeDirection = figureExercise({
   name: "ridgeDirection",
   title: "The direction of a ridge",
   lesson: "object-space",
@@ -88,7 +87,7 @@ export const ridgeDirection: FigureExercise = {
     "wrong sense":
       "This counts the wrong way round: azimuths grow from X towards Y, counter-clockwise in plan.",
   },
-};
+});
 
 /** Places on a grid over some rings. */
 function sampled(rings: readonly (readonly (readonly number[])[])[], step: number): Place[] {
@@ -152,15 +151,13 @@ export function outcomeOfRegion(covered: readonly Covered[]): Outcome {
   );
 }
 
-export const wholeFace: FigureExercise = {
-  kind: "figure",
+export const wholeFace = figureExercise({
   name: "wholeFace",
   title: "A region that is a roof face",
   lesson: "object-space",
   source: "W96 3.3, figure 3",
   text: "Pick a [[region]] that is a face of a roof: at least three quarters of the face, and at most a quarter beyond it.",
   figure: "regions",
-  asks: { by: "state" },
   begin: async () => ({ view: 0 }),
   judge: async ({ shown }): Promise<Outcome> => {
     const { selection } = shown;
@@ -188,7 +185,7 @@ export const wholeFace: FigureExercise = {
     "a part of a face": "This is a part of a face: something on the roof, or its texture, cut it in pieces.",
     "beyond the face": "This region goes on beyond the face, where the ground has the same grey level.",
   },
-};
+});
 
 /** The kinds of edges around a face. */
 const edgesAround = ({ id }: RoofFace) =>
@@ -209,15 +206,13 @@ function isHipEnd(face: RoofFace | null): boolean {
   return around.filter((kind) => kind === "hip").length >= 2 && !around.includes("ridge");
 }
 
-export const hipEnd: FigureExercise = {
-  kind: "figure",
+export const hipEnd = figureExercise({
   name: "hipEnd",
   title: "A hip end in plan",
   lesson: "roofs",
   source: "B99 4.3, figures 21 to 23",
   text: "Pick a [[facet]] that is a hip end: bounded by an [[eave]] and two [[hip|hips]], with no part of the [[ridge]].",
   figure: "facet-plan",
-  asks: { by: "state" },
   begin: async ({ shown }) => {
     const other = (shown.results.facets ?? []).findIndex(({ outer }) => !isHipEnd(faceOfFacet(outer)));
     return other < 0 ? {} : { select: `facet:${other}` };
@@ -255,4 +250,4 @@ export const hipEnd: FigureExercise = {
     "a gable": "This face reaches from the eave to the ridge and ends at gables: there is no hip.",
     "no face of a roof": "The scene has no face of a roof there: the facet is wrong.",
   },
-};
+});

@@ -2,7 +2,7 @@
 import { add, cross, DEGREE, distance2, dot, norm, sub, unit } from "../../shared/linear";
 import type { ViewInfo } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
-import type { FigureExercise, Outcome } from "./judgeFigure";
+import { figureExercise, type Outcome } from "./judgeFigure";
 import { edgeAlong, imageIn, lineOf, type Point } from "./truth";
 
 /** Of an edge in an image, pixels. */
@@ -85,8 +85,7 @@ export function outcomeOf(pair: Pair, pairs: readonly Pair[]): Outcome {
   return { mistake: isShort(pair, most) ? "short baseline" : "not the best" };
 }
 
-export const bestPair: FigureExercise = {
-  kind: "figure",
+export const bestPair = figureExercise({
   name: "bestPair",
   title: "The pair that knows a line best",
   lesson: "triangulation",
@@ -133,4 +132,4 @@ export const bestPair: FigureExercise = {
     "short baseline": "The centres are close together: the planes through the line meet at a small angle.",
     "not the best": "This pair is not bad, but another one has a longer baseline across the line.",
   },
-};
+});

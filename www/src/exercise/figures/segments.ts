@@ -1,17 +1,17 @@
 /** In the photographs: which edge of a roof a segment shows, and which segment of another view shows the same. */
 
+import type { FigureState } from "../../element/figureState";
+import { lengthOf } from "../../shared/flatArrays";
 import type { PairCandidate } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
-import type { Asked, FigureExercise, Outcome } from "./judgeFigure";
+import { type Asked, figureExercise, type Outcome } from "./judgeFigure";
 import { distanceFrom, edgeShown, type RoofEdge, type Stretch, segmentOf, shows } from "./truth";
 
 /** Next to an edge, but not on it, pixels: a gutter, a wall, a shadow. */
 const BESIDE_PX = 14;
 const LEAST_PX = 25;
 
-function isLong([p, q]: Stretch): boolean {
-  return Math.hypot(q[0] - p[0], q[1] - p[1]) >= LEAST_PX;
-}
+const isLong = (at: Stretch) => lengthOf(at) >= LEAST_PX;
 
 /** The segments of a view, and the edge that each of them shows. */
 export function edgesOfView(
@@ -33,27 +33,23 @@ const KIND_MISTAKES: Readonly<Record<string, string>> = {
   abutment: "an abutment",
 };
 
-export const pickEave: FigureExercise = {
-  kind: "figure",
+export const pickEave = figureExercise({
   name: "pickEave",
   title: "An eave in the photograph",
   lesson: "pinhole",
   source: "B99 3.2",
   text: "Pick a [[segment]] that shows an [[eave]]: the level lower border of a roof.",
   figure: "segments",
-  asks: { by: "state" },
   begin: async () => ({ view: 0 }),
   judge: async ({ shown }) => {
-    const { selection, scene } = shown;
-    if (selection?.kind !== "segment" && selection?.kind !== "rejectedSegment") {
-      return { form: "Pick a segment in the photograph." };
-    }
-    if (selection.kind === "rejectedSegment") {
+    const { selection } = shown;
+    if (selection?.kind === "rejectedSegment") {
       return { form: "This line was rejected and is no segment. Pick one of the others." };
     }
-    const at = segmentOf(shown, selection.view, selection.index);
-    const view = scene?.views[selection.view];
-    const edge = at === null || view === undefined ? null : edgeShown(view, at);
+    if (selection?.kind !== "segment") {
+      return { form: "Pick a segment in the photograph." };
+    }
+    const edge = ownEdge(shown);
     if (edge === null) {
       return { mistake: "no edge of a roof" };
     }
@@ -79,7 +75,7 @@ export const pickEave: FigureExercise = {
     "no edge of a roof":
       "The scene has no edge of a roof here: it is a line on the ground, on a wall, within a roof, or the border of a shadow.",
   },
-};
+});
 
 /** The edge that the picked segment shows. */
 function ownEdge(shown: Figure): RoofEdge | null {
@@ -118,7 +114,7 @@ function truthOf(
 async function segmentWith(
   { shown, ask }: Asked,
   begins: (candidates: readonly PairCandidate[], truths: readonly Truth[]) => number,
-): Promise<{ select: string; point: readonly [number, number] } | null> {
+): Promise<Partial<FigureState>> {
   for (const { index, edge, at } of edgesOfView(shown, 0)) {
     if (edge !== null && isLong(at)) {
       const story = await ask("segmentStory", 0, index);
@@ -132,7 +128,7 @@ async function segmentWith(
       }
     }
   }
-  return null;
+  return {};
 }
 
 /** The candidate that is compared; why there is none. */
@@ -151,21 +147,19 @@ const MISTAKE_OF: Readonly<Record<Exclude<Truth, "same">, string>> = {
   none: "no edge of a roof",
 };
 
-export const trueCandidate: FigureExercise = {
-  kind: "figure",
+export const trueCandidate = figureExercise({
   name: "trueCandidate",
   title: "The true candidate in the beam",
   lesson: "epipolar",
   source: "B99 3.1, figures 1 and 2",
   text: "The picked segment shows an edge of a roof. Several segments lie in its [[epipolar-beam|epipolar beams]] in the other views. Choose a [[candidate]] that shows the same edge.",
   figure: "epipolar-beam",
-  asks: { by: "state" },
-  begin: async (of) =>
-    (await segmentWith(of, (_, truths) =>
+  begin: (of) =>
+    segmentWith(of, (_, truths) =>
       truths.includes("same") && truths.filter((one) => one !== "same").length > 1
         ? truths.findIndex((one) => one !== "same")
         : -1,
-    )) ?? {},
+    ),
   judge: async ({ shown }): Promise<Outcome> => {
     const found = compared(shown);
     if ("form" in found) {
@@ -184,7 +178,7 @@ export const trueCandidate: FigureExercise = {
     "no edge of a roof":
       "This segment shows no edge of a roof at all. That it lies in the beam does not say much.",
   },
-};
+});
 
 function candidateAnswer(shown: Figure, isRight: (truth: Truth, candidate: PairCandidate) => boolean) {
   const edge = ownEdge(shown);
@@ -205,22 +199,18 @@ function candidateAnswer(shown: Figure, isRight: (truth: Truth, candidate: PairC
 
 const isVerified = ({ predictions }: PairCandidate) => predictions.some(({ verified }) => verified !== null);
 
-export const falseCandidate: FigureExercise = {
-  kind: "figure",
+export const falseCandidate = figureExercise({
   name: "falseCandidate",
   title: "What the third view contradicts",
   lesson: "trifocal",
   source: "B99 3.2, figure 3",
   text: "A pair of segments [[transfer|predicts]] a line in each further view. Choose a [[candidate]] that is wrong and that is found out: no other view has a segment where the pair predicts its line.",
   figure: "point-transfer",
-  asks: { by: "state" },
-  begin: async (of) =>
-    (await segmentWith(of, (candidates, truths) => {
-      const isFoundOut = truths.map(
-        (one, i) => one !== "same" && !isVerified(candidates[i] as PairCandidate),
-      );
-      return isFoundOut.includes(true) ? truths.indexOf("same") : -1;
-    })) ?? {},
+  begin: (of) =>
+    segmentWith(of, (candidates, truths) => {
+      const isFoundOut = candidates.some((one, i) => truths[i] !== "same" && !isVerified(one));
+      return isFoundOut ? truths.indexOf("same") : -1;
+    }),
   judge: async ({ shown }): Promise<Outcome> => {
     const found = compared(shown);
     if ("form" in found) {
@@ -248,7 +238,7 @@ export const falseCandidate: FigureExercise = {
     "nothing predicted":
       "This pair predicts no line: the planes through both segments nearly coincide, and where they meet is not determined.",
   },
-};
+});
 
 /** So near to the highest or lowest correlation. */
 const NEARLY = 0.03;
@@ -272,19 +262,17 @@ async function correlations({ shown, ask }: Asked): Promise<(number | null)[]> {
 
 const known = (all: readonly (number | null)[]) => all.filter((one) => one !== null);
 
-export const bestWindows: FigureExercise = {
-  kind: "figure",
+export const bestWindows = figureExercise({
   name: "bestWindows",
   title: "Where two windows agree best",
   lesson: "correlation",
   source: "B99 3.1, figure 4",
   text: "The segment and its first candidate show the same edge, and yet their [[correlation]] differs along it. Move the point x along the segment to where the two [[correlation-window|windows]] agree best: within 0.03 of the highest correlation.",
   figure: "correlation-windows",
-  asks: { by: "state" },
-  begin: async (of) =>
-    (await segmentWith(of, (candidates, truths) =>
+  begin: (of) =>
+    segmentWith(of, (candidates, truths) =>
       truths[0] === "same" && truths.length > 1 && (candidates[0]?.score ?? 0) > 0.5 ? 0 : -1,
-    )) ?? {},
+    ),
   judge: async (of): Promise<Outcome> => {
     const { detail } = of.shown;
     if (detail.story === null) {
@@ -320,4 +308,4 @@ export const bestWindows: FigureExercise = {
       "Here the epipolar line of x meets the candidate beyond its ends, so that there is nothing to compare.",
     "another candidate": "This is another candidate. The first one shows the same edge.",
   },
-};
+});

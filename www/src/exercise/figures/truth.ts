@@ -2,7 +2,20 @@
  * What is true of the demo scene: the roofs from which its photographs were rendered (`demoTruth.json`, by scripts/demoTruth.mjs), and
  * which of them an image line, a 3D line or a facet shows. Metres, in the scene's local frame; pixels.
  */
-import { add, cross, DEGREE, distance2, dot, isInside, mix3, scaled, sub, unit } from "../../shared/linear";
+import { lineAt, segmentAt } from "../../shared/flatArrays";
+import {
+  add,
+  cross,
+  DEGREE,
+  distance2,
+  dot,
+  isInside,
+  mix3,
+  nearestOf,
+  scaled,
+  sub,
+  unit,
+} from "../../shared/linear";
 import type { Side, ViewInfo } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import demo from "./demoTruth.json";
@@ -53,10 +66,7 @@ export function imageIn(view: ViewInfo, [x, y, z]: Point): Place {
 
 /** A segment that a view was found to have. */
 export function segmentOf({ results }: Figure, view: number, index: number): Stretch | null {
-  const ends = results.segments[view]?.subarray(4 * index, 4 * index + 4);
-  return ends?.length === 4
-    ? ([[...ends.subarray(0, 2)], [...ends.subarray(2, 4)]] as unknown as Stretch)
-    : null;
+  return segmentAt(results.segments[view], index);
 }
 
 /** How a stretch lies to a line: the largest distance of its ends, and how much of it lies beside the line. */
@@ -83,7 +93,7 @@ export function distanceFrom(edge: RoofEdge, view: ViewInfo, stretch: Stretch): 
 
 /** The edge of a roof that a stretch of a view shows; null where it shows none. */
 export function edgeShown(view: ViewInfo, stretch: Stretch): RoofEdge | null {
-  return nearest(EDGES, (edge) => distanceFrom(edge, view, stretch), NEAR_PX);
+  return nearestOf(EDGES, (edge) => distanceFrom(edge, view, stretch), NEAR_PX);
 }
 
 /** Whether a stretch of a view shows this edge. */
@@ -93,16 +103,13 @@ export function shows(edge: RoofEdge, view: ViewInfo, stretch: Stretch): boolean
 
 /** A 3D line that was found. */
 export function lineOf({ results }: Figure, index: number): readonly [Point, Point] | null {
-  const ends = results.lines?.subarray(6 * index, 6 * index + 6);
-  return ends?.length === 6
-    ? ([[...ends.subarray(0, 3)], [...ends.subarray(3, 6)]] as unknown as [Point, Point])
-    : null;
+  return lineAt(results.lines, index);
 }
 
 /** The edge of a roof along which a 3D line runs. */
 export function edgeAlong([p, q]: readonly [Point, Point]): RoofEdge | null {
   const flat = ([x, y]: Point): Place => [x, y];
-  return nearest(
+  return nearestOf(
     EDGES,
     (edge) => {
       const { distance, isParallel, share } = apart([flat(p), flat(q)], [flat(edge.p0), flat(edge.p1)]);
@@ -150,9 +157,4 @@ export function faceBeside(
   const across = cross([a, b, c], along);
   const sign = dot(across, outward) < 0 ? -1 : 1;
   return { face, theta: Math.atan2(sign * dot(across, up), sign * dot(across, outward)) / DEGREE };
-}
-
-function nearest<T>(all: readonly T[], distance: (one: T) => number, most: number): T | null {
-  const found = all.map((one) => ({ one, at: distance(one) })).sort((a, b) => a.at - b.at)[0];
-  return found !== undefined && found.at <= most ? found.one : null;
 }

@@ -1,6 +1,6 @@
 /** The angle of a half-plane about its line: theta of B99 4.1. */
 import { add, cross, DEGREE, dot, scaled, sub, unit } from "../../shared/linear";
-import { type FunctionExercise, numberProblem } from "../judging/judge";
+import { functionExercise, numberProblem } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, plantedPoint } from "../judging/random";
 
@@ -19,8 +19,7 @@ function angle(p: Vector, q: Vector, n: Vector): number {
 /** The steepest slope of a plane, radians. */
 const slope = (n: Vector) => Math.acos(Math.min(1, Math.abs(n[2] ?? 0)));
 
-export const angleOfPlane: FunctionExercise<Input, number> = {
-  kind: "function",
+export const angleOfPlane = functionExercise<Input, number>({
   name: "angleOfPlane",
   title: "The angle of a half-plane",
   lesson: "roofs",
@@ -62,34 +61,29 @@ function angleOfPlane(p, q, n) {
   },
   formProblem: (answer) => numberProblem(answer, "degrees"),
   isSame: (a, b) => Math.abs(a - b) < 1e-5,
-  mistakes: [
-    {
-      name: "radians for degrees",
+  mistakes: {
+    "radians for degrees": {
       says: "The result is in radians. Multiply by 180 / π.",
       variants: [(...input) => angle(...input)],
     },
-    {
-      name: "wrong side",
+    "wrong side": {
       says: "This is the angle of the half-plane to the right of the line, or its sign is wrong: what rises to the left falls to the right.",
       variants: [(...input) => -angle(...input) / DEGREE],
     },
-    {
-      name: "sign lost",
+    "sign lost": {
       says: "The result has no sign: whether the roof rises or falls away from the line is lost. Use atan2 with both components.",
       variants: [(...input) => Math.abs(angle(...input)) / DEGREE],
     },
-    {
-      name: "slope of the plane",
+    "slope of the plane": {
       says: "This is the steepest slope of the plane, the angle between n and the vertical. θ is measured about the line, across it.",
       variants: [(_, __, n) => slope(n) / DEGREE],
     },
-    {
-      name: "from the vertical",
+    "from the vertical": {
       says: "The angle is measured from the vertical. θ is 0 where the half-plane is level across the line.",
       variants: [
         (...input) => 90 - angle(...input) / DEGREE,
         (...input) => 90 - Math.abs(angle(...input)) / DEGREE,
       ],
     },
-  ],
-};
+  },
+});

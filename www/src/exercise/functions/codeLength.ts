@@ -1,5 +1,5 @@
 /** The description length of a region: what W96 3.3 minimises. */
-import { type FunctionExercise, numberProblem } from "../judging/judge";
+import { functionExercise, numberProblem } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, normal } from "../judging/random";
 
@@ -17,8 +17,7 @@ function length(n: number, squares: number, parameters = Math.log2(n)): number {
   return (n / 2) * Math.log2(E2PI * squares) + parameters;
 }
 
-export const descriptionLength: FunctionExercise<Input, number> = {
-  kind: "function",
+export const descriptionLength = functionExercise<Input, number>({
   name: "descriptionLength",
   title: "The description length of a region",
   lesson: "object-space",
@@ -52,49 +51,42 @@ function descriptionLength(values) {
   },
   formProblem: (answer) => numberProblem(answer, "bits"),
   isSame: (a, b) => Math.abs(a - b) < 1e-7 * (1 + Math.abs(a)),
-  mistakes: [
-    {
-      name: "nats for bits",
+  mistakes: {
+    "nats for bits": {
       says: "The logarithms are natural: the result is in nats. Bits take the logarithm to the base 2.",
       variants: [(values) => length(values.length, variance(values)) * Math.LN2],
     },
-    {
-      name: "log10 for log2",
+    "log10 for log2": {
       says: "The logarithms are those to the base 10. Bits take the logarithm to the base 2.",
       variants: [(values) => length(values.length, variance(values)) * Math.log10(2)],
     },
-    {
-      name: "parameters forgotten",
+    "parameters forgotten": {
       says: "Mean and variance cost nothing here. Without their log₂ n, cutting a region in two always pays.",
       variants: [(values) => length(values.length, variance(values), 0)],
     },
-    {
-      name: "half the parameters",
+    "half the parameters": {
       says: "Two parameters cost half a log₂ n each, which is log₂ n together.",
       variants: [
         (values) => length(values.length, variance(values), Math.log2(values.length) / 2),
         (values) => length(values.length, variance(values), Math.log2(values.length) * 2),
       ],
     },
-    {
-      name: "standard deviation for variance",
+    "standard deviation for variance": {
       says: "s stands where s² should, or the half before n is missing: half of log₂ s² is log₂ s.",
       variants: [
         (values) => length(values.length, Math.sqrt(variance(values))),
         (values) => 2 * length(values.length, variance(values), 0) + Math.log2(values.length),
       ],
     },
-    {
-      name: "n − 1 for n",
+    "n − 1 for n": {
       says: "The squares are divided by n − 1. The shortest code is that of the mean of the squares, divided by n.",
       variants: [(values) => length(values.length, variance(values, values.length - 1))],
     },
-    {
-      name: "mean not subtracted",
+    "mean not subtracted": {
       says: "The squares are those of the grey values themselves. s² is about the mean of the region: the noise, not the brightness.",
       variants: [
         (values) => length(values.length, values.reduce((all, value) => all + value ** 2, 0) / values.length),
       ],
     },
-  ],
-};
+  },
+});

@@ -1,7 +1,7 @@
 /** How well a point is known that two views show: B99 figure 9, "accuracy against the number of views". */
-import { dot, inverse, type Mat, times, transpose } from "../../shared/linear";
-import { type FunctionExercise, matrixProblem } from "../judging/judge";
-import { sum, type Vector } from "../judging/linear";
+import { dot, inverse, type Mat, sum, times, transpose } from "../../shared/linear";
+import { functionExercise, matrixProblem } from "../judging/judge";
+import type { Vector } from "../judging/linear";
 import { between, plantedCamera, plantedPoint } from "../judging/random";
 
 type Input = readonly [projections: readonly Mat[], x: Vector, sigma: number];
@@ -26,8 +26,7 @@ function covariance(projections: readonly Mat[], x: Vector, sigma: number): Mat 
   return scaled(inverse(information(projections, x)), sigma ** 2);
 }
 
-export const covarianceOfPoint: FunctionExercise<Input, Mat> = {
-  kind: "function",
+export const covarianceOfPoint = functionExercise<Input, Mat>({
   name: "covarianceOfPoint",
   title: "How well a point is known",
   lesson: "triangulation",
@@ -74,32 +73,27 @@ function covarianceOfPoint(Ps, X, sigma) {
     const size = Math.max(...a.flat().map(Math.abs));
     return Math.max(...sum(a, b, -1).flat().map(Math.abs)) <= 1e-5 * size;
   },
-  mistakes: [
-    {
-      name: "standard deviation for variance",
+  mistakes: {
+    "standard deviation for variance": {
       says: "σ stands where σ² should. A covariance is made of variances: pixels squared become metres squared.",
       variants: [(ps, x, sigma) => scaled(inverse(information(ps, x)), sigma)],
     },
-    {
-      name: "σ forgotten",
+    "σ forgotten": {
       says: "This is the covariance for measurements of one pixel: the standard deviation of the images is not in it.",
       variants: [(ps, x) => inverse(information(ps, x))],
     },
-    {
-      name: "not inverted",
+    "not inverted": {
       says: "This is Σ Jᵀ J / σ², the information: it grows with every view. The covariance is its inverse.",
       variants: [
         (ps, x, sigma) => scaled(information(ps, x), sigma ** -2),
         (ps, x, sigma) => scaled(information(ps, x), sigma ** 2),
       ],
     },
-    {
-      name: "σ on the wrong side",
+    "σ on the wrong side": {
       says: "The covariance is divided by σ², not multiplied: worse images make better points.",
       variants: [(ps, x, sigma) => scaled(inverse(information(ps, x)), sigma ** -2)],
     },
-    {
-      name: "derivative of the numerator alone",
+    "derivative of the numerator alone": {
       says: "The derivative of u is (p₁ − u p₃) / w: what p₃ adds, the change of the depth, is missing.",
       variants: [
         (ps, x, sigma) => {
@@ -111,8 +105,7 @@ function covarianceOfPoint(Ps, X, sigma) {
         },
       ],
     },
-    {
-      name: "not divided by the depth",
+    "not divided by the depth": {
       says: "The derivatives are not divided by p₃ · X: the point is as well known as if it were 1 m away.",
       variants: [
         (ps, x, sigma) => {
@@ -121,13 +114,12 @@ function covarianceOfPoint(Ps, X, sigma) {
         },
       ],
     },
-    {
-      name: "mean over the views",
+    "mean over the views": {
       says: "The information of the views is averaged, not added: then a further view would not help.",
       variants: [
         (ps, x, sigma) => scaled(covariance(ps, x, sigma), ps.length),
         (ps, x, sigma) => scaled(covariance(ps, x, sigma), 2 * ps.length),
       ],
     },
-  ],
-};
+  },
+});

@@ -1,6 +1,6 @@
 /** F from two projections, as every epipolar beam of B99 3.1 needs it. */
 import { apply, crossMatrix, type Mat, times, transpose } from "../../shared/linear";
-import { type FunctionExercise, matrixProblem } from "../judging/judge";
+import { functionExercise, matrixProblem } from "../judging/judge";
 import { centreOf, fundamental, isSameUpToScale, pseudoInverse } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
@@ -8,8 +8,7 @@ type Input = readonly [p: Mat, q: Mat];
 
 const POINTS = 10;
 
-export const fundamentalFromProjections: FunctionExercise<Input, Mat> = {
-  kind: "function",
+export const fundamentalFromProjections = functionExercise<Input, Mat>({
   name: "fundamentalFromProjections",
   title: "The fundamental matrix of two views",
   lesson: "epipolar",
@@ -60,29 +59,24 @@ function fundamentalFromProjections(P, Q) {
   },
   formProblem: (answer) => matrixProblem(answer, 3, 3),
   isSame: isSameUpToScale,
-  mistakes: [
-    {
-      name: "transposed",
+  mistakes: {
+    transposed: {
       says: "This is Fᵀ: it holds for xᵀ F x′ = 0. Here x, of the view of P, stands on the right, so that F x is a line of the view of P′.",
       variants: [(p, q) => transpose(fundamental(p, q))],
     },
-    {
-      name: "no cross product",
+    "no cross product": {
       says: "This is P′ P⁺ alone, which maps points to points. The line through the epipole and that point is their cross product: multiply by [e′]× from the left.",
       variants: [(p, q) => times(q, pseudoInverse(p))],
     },
-    {
-      name: "transpose for pseudo-inverse",
+    "transpose for pseudo-inverse": {
       says: "Pᵀ stands in the place of P⁺. P is not orthogonal: P⁺ = Pᵀ (P Pᵀ)⁻¹.",
       variants: [(p, q) => times(crossMatrix(apply(q, centreOf(p))), times(q, transpose(p)))],
     },
-    {
-      name: "wrong epipole",
+    "wrong epipole": {
       says: "The epipole is that of the other view: e = P C′. All lines F x lie in the second view and meet in e′ = P′ C, the image of the first centre.",
       variants: [(p, q) => times(crossMatrix(apply(p, centreOf(q))), times(q, pseudoInverse(p)))],
     },
-    {
-      name: "wrong sign",
+    "wrong sign": {
       says: "[e′]× is antisymmetric: what stands above the diagonal has the opposite sign below it.",
       variants: [
         (p, q) => {
@@ -96,8 +90,7 @@ function fundamentalFromProjections(P, Q) {
         },
       ],
     },
-    {
-      name: "everything is zero",
+    "everything is zero": {
       says: "P′ C′ is zero: the centre of a view has no image in that view itself. Take C, the centre of P.",
       variants: [
         () => [
@@ -107,5 +100,5 @@ function fundamentalFromProjections(P, Q) {
         ],
       ],
     },
-  ],
-};
+  },
+});

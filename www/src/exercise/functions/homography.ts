@@ -1,7 +1,19 @@
 /** The homography that a plane induces between two views: H(theta) of B99 4.1. */
-import { add, apply, dot, inverse, type Mat, scaled, sub, times, transpose } from "../../shared/linear";
-import { type FunctionExercise, matrixProblem } from "../judging/judge";
-import { dehomogenised, distance, isSameUpToScale, outer, sum, type Vector } from "../judging/linear";
+import {
+  add,
+  apply,
+  dot,
+  inverse,
+  type Mat,
+  outer,
+  scaled,
+  sub,
+  sum,
+  times,
+  transpose,
+} from "../../shared/linear";
+import { functionExercise, matrixProblem } from "../judging/judge";
+import { dehomogenised, distance, isSameUpToScale, type Vector } from "../judging/linear";
 import { between, plantedCamera } from "../judging/random";
 
 type Input = readonly [k: Mat, kOther: Mat, r: Mat, t: Vector, n: Vector, d: number];
@@ -22,8 +34,7 @@ function shift(by: number): Mat {
   ];
 }
 
-export const homographyOfPlane: FunctionExercise<Input, Mat> = {
-  kind: "function",
+export const homographyOfPlane = functionExercise<Input, Mat>({
   name: "homographyOfPlane",
   title: "The homography of a plane",
   lesson: "homography",
@@ -69,54 +80,44 @@ function homographyOfPlane(K, L, R, t, n, d) {
   },
   formProblem: (answer) => matrixProblem(answer, 3, 3),
   isSame: isSameUpToScale,
-  mistakes: [
-    {
-      name: "R transposed",
+  mistakes: {
+    "R transposed": {
       says: "R turns the wrong way: Rᵀ stands where R should. Some files state the rotation from the camera to the world; here R takes from the first camera to the second.",
       variants: [(k, l, r, t, n, d) => homography(k, l, transpose(r), t, n, d)],
     },
-    {
-      name: "wrong sign",
+    "wrong sign": {
       says: "The sign of t nᵀ / d is wrong. With n · X = d it is a plus; the minus belongs to planes that are written n · X + d = 0.",
       variants: [(k, l, r, t, n, d) => homography(k, l, r, t, n, d, -1)],
     },
-    {
-      name: "not divided by the distance",
+    "not divided by the distance": {
       says: "t nᵀ is not divided by d. Only n · X / d is 1 on the plane; without it the plane lies 1 m away from the camera.",
       variants: [(k, l, r, t, n) => homography(k, l, r, t, n, 1)],
     },
-    {
-      name: "multiplied by the distance",
+    "multiplied by the distance": {
       says: "t nᵀ is multiplied by d. Divide by it: it is n · X / d that is 1 on the plane.",
       variants: [(k, l, r, t, n, d) => homography(k, l, r, t, n, 1 / d)],
     },
-    {
-      name: "other direction",
+    "other direction": {
       says: "This is H⁻¹: it takes the second view to the first.",
       variants: [(...input) => inverse(homography(...input))],
     },
-    {
-      name: "K not inverted",
+    "K not inverted": {
       says: "K stands on the right as it is. Pixels become directions by K⁻¹.",
       variants: [(k, l, r, t, n, d) => times(l, times(sum(r, outer(t, n), 1 / d), k))],
     },
-    {
-      name: "K forgotten",
+    "K forgotten": {
       says: "This takes directions to directions: for pixels, K⁻¹ on the right and K′ on the left are missing.",
       variants: [(_, __, r, t, n, d) => sum(r, outer(t, n), 1 / d)],
     },
-    {
-      name: "cameras exchanged",
+    "cameras exchanged": {
       says: "K and K′ have changed places: K⁻¹ stands on the right, where pixels of the first photograph come in, and K′ on the left.",
       variants: [(k, l, ...of) => homography(l, k, ...of)],
     },
-    {
-      name: "n and t exchanged",
+    "n and t exchanged": {
       says: "n tᵀ stands in the place of t nᵀ: columns are moved along t, by n · X.",
       variants: [(k, l, r, t, n, d) => homography(k, l, r, n, t, d)],
     },
-    {
-      name: "half a pixel",
+    "half a pixel": {
       says: "The result is shifted by half a pixel: the principal point is in the coordinates of the images already, with the centre of the first pixel at (0.5, 0.5).",
       variants: [0.5, -0.5].flatMap((by) => [
         (...input: Input) => times(shift(by), times(homography(...input), shift(-by))),
@@ -124,5 +125,5 @@ function homographyOfPlane(K, L, R, t, n, d) {
         (...input: Input) => times(shift(by), homography(...input)),
       ]),
     },
-  ],
-};
+  },
+});

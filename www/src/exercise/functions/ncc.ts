@@ -1,6 +1,6 @@
 /** Normalised cross-correlation, by which B99 3.1 compares windows. */
 import { dot } from "../../shared/linear";
-import { described, type FunctionExercise } from "../judging/judge";
+import { described, functionExercise } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, normal, type Random } from "../judging/random";
 
@@ -30,8 +30,7 @@ function direction(random: Random, others: readonly Vector[]): number[] {
   return left.map((value) => value / size);
 }
 
-export const ncc: FunctionExercise<Input, number> = {
-  kind: "function",
+export const ncc = functionExercise<Input, number>({
   name: "ncc",
   title: "Normalised cross-correlation",
   lesson: "correlation",
@@ -75,9 +74,8 @@ function ncc(a, b) {
   formProblem: (answer) =>
     typeof answer === "number" ? null : `Return one number; this is ${described(answer)}.`,
   isSame: (a, b) => Object.is(a, b) || Math.abs(a - b) < 1e-6 * (1 + Math.abs(a)),
-  mistakes: [
-    {
-      name: "mean not subtracted",
+  mistakes: {
+    "mean not subtracted": {
       says: "The means are still in the windows: two bright windows look alike whatever they show. Subtract each window's own mean first.",
       variants: [
         (a, b) => dot(a, b) / Math.sqrt(dot(a, a) * dot(b, b)),
@@ -88,8 +86,7 @@ function ncc(a, b) {
         },
       ],
     },
-    {
-      name: "not normalised",
+    "not normalised": {
       says: "This is the covariance: it grows with the contrast of the windows. Divide by the product of both standard deviations.",
       variants: [
         (a, b) => dot(centred(a), centred(b)),
@@ -97,29 +94,25 @@ function ncc(a, b) {
         (a, b) => dot(centred(a), centred(b)) / (a.length - 1),
       ],
     },
-    {
-      name: "variance for standard deviation",
+    "variance for standard deviation": {
       says: "The product of the variances stands in the denominator; it is its square root that makes the result a number from −1 to 1.",
       variants: [
         quotient((u, v) => dot(u, u) * dot(v, v)),
         quotient((u, v) => (dot(u, u) * dot(v, v)) / PIXELS),
       ],
     },
-    {
-      name: "n and n − 1 mixed",
+    "n and n − 1 mixed": {
       says: "The covariance is divided by n and the variances by n − 1, or the other way round. Take one of them throughout, or neither: it cancels.",
       variants: [
         (a, b) => (correlation(a, b) * (a.length - 1)) / a.length,
         (a, b) => (correlation(a, b) * a.length) / (a.length - 1),
       ],
     },
-    {
-      name: "sign lost",
+    "sign lost": {
       says: "The result has no sign: a negative is not like its positive. Do not square or take the absolute value.",
       variants: [(a, b) => Math.abs(correlation(a, b)), (a, b) => correlation(a, b) ** 2],
     },
-    {
-      name: "one mean for both",
+    "one mean for both": {
       says: "The mean of one window, or of both together, is subtracted from both. Each has its own.",
       variants: [
         (a, b) => withMeans(a, b, mean(a), mean(a)),
@@ -127,8 +120,7 @@ function ncc(a, b) {
         (a, b) => withMeans(a, b, (mean(a) + mean(b)) / 2, (mean(a) + mean(b)) / 2),
       ],
     },
-    {
-      name: "divided by nothing",
+    "divided by nothing": {
       says: "Right, but for a constant window, where the result is NaN: its standard deviation is 0. Ask before you divide.",
       variants: [
         (a, b) => {
@@ -137,8 +129,8 @@ function ncc(a, b) {
         },
       ],
     },
-  ],
-};
+  },
+});
 
 function quotient(below: (u: Vector, v: Vector) => number): (a: Vector, b: Vector) => number {
   return (a, b) => {

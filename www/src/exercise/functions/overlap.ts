@@ -1,5 +1,5 @@
 /** Do two stretches of a line have a part in common? The weak constraint of the epipolar beam, B99 3.1. */
-import { type FunctionExercise, numberProblem } from "../judging/judge";
+import { functionExercise, numberProblem } from "../judging/judge";
 import { between } from "../judging/random";
 
 type Interval = readonly [number, number];
@@ -14,8 +14,7 @@ function overlap(a: Interval, b: Interval): number {
   return Math.min(p[1], q[1]) - Math.max(p[0], q[0]);
 }
 
-export const signedOverlap: FunctionExercise<Input, number> = {
-  kind: "function",
+export const signedOverlap = functionExercise<Input, number>({
   name: "signedOverlap",
   title: "Overlap within an epipolar beam",
   lesson: "epipolar",
@@ -46,34 +45,28 @@ function signedOverlap(a, b) {
   },
   formProblem: (answer) => numberProblem(answer, "pixels"),
   isSame: (a, b) => Math.abs(a - b) < 1e-6,
-  mistakes: [
-    {
-      name: "gap lost",
+  mistakes: {
+    "gap lost": {
       says: "Where the stretches do not meet, the result is 0. How far apart they are must be said as well: ends are unreliable, and a small gap is no contradiction.",
       variants: [(a, b) => Math.max(0, overlap(a, b))],
     },
-    {
-      name: "order taken for granted",
+    "order taken for granted": {
       says: "A stretch may be given backwards: in the other view the segment may run the other way. Order the two ends first.",
       variants: [(a, b) => Math.min(a[1], b[1]) - Math.max(a[0], b[0])],
     },
-    {
-      name: "union for intersection",
+    "union for intersection": {
       says: "This is the length from the first end to the last one, of both together. The common part begins at the later beginning and ends at the earlier end.",
       variants: [(a, b) => Math.max(...a, ...b) - Math.min(...a, ...b)],
     },
-    {
-      name: "wrong sign",
+    "wrong sign": {
       says: "The sign is wrong: a common part is positive, a gap negative.",
       variants: [(a, b) => -overlap(a, b)],
     },
-    {
-      name: "sign lost",
+    "sign lost": {
       says: "The result has no sign: a gap of 10 px looks like 10 px in common.",
       variants: [(a, b) => Math.abs(overlap(a, b))],
     },
-    {
-      name: "share for length",
+    "share for length": {
       says: "The result is divided by a length. Pixels are asked for.",
       variants: [
         (a, b) => overlap(a, b) / lengthOf(a),
@@ -81,5 +74,5 @@ function signedOverlap(a, b) {
         (a, b) => overlap(a, b) / Math.min(lengthOf(a), lengthOf(b)),
       ],
     },
-  ],
-};
+  },
+});

@@ -1,6 +1,6 @@
 /** New lines where two planes meet: B99 4.2. */
 import { add, apply, cross, dot, inverse, norm, scaled, sub, unit } from "../../shared/linear";
-import { described, type FunctionExercise, isVector } from "../judging/judge";
+import { described, functionExercise, isVector } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, plantedPoint, type Random } from "../judging/random";
 
@@ -27,8 +27,7 @@ function distance(point: Vector, line: Line): number {
   return norm(cross(sub(point, line.point), unit(line.direction)));
 }
 
-export const lineFromPlanes: FunctionExercise<Input, Line> = {
-  kind: "function",
+export const lineFromPlanes = functionExercise<Input, Line>({
   name: "lineFromPlanes",
   title: "The line where two planes meet",
   lesson: "lines-in-space",
@@ -76,35 +75,30 @@ function lineFromPlanes(n, d, m, e) {
     const [u, v] = [unit(a.direction), unit(b.direction)];
     return norm(cross(u, v)) < 1e-6 && distance(b.point, a) < 1e-5 * (1 + norm(a.point));
   },
-  mistakes: [
-    {
-      name: "wrong sign",
+  mistakes: {
+    "wrong sign": {
       says: "The line is mirrored at the origin: the planes are read as n · X + d = 0. Here d is n · X.",
       variants: [(n, d, m, e) => meet(n, -d, m, -e)],
     },
-    {
-      name: "sum for cross product",
+    "sum for cross product": {
       says: "The direction is a sum or difference of the normals, which lies in neither plane. What is perpendicular to both normals is their cross product.",
       variants: [
         (n, d, m, e) => ({ ...meet(n, d, m, e), direction: add(n, m) }),
         (n, d, m, e) => ({ ...meet(n, d, m, e), direction: sub(n, m) }),
       ],
     },
-    {
-      name: "point of one plane",
+    "point of one plane": {
       says: "The point lies in one of the planes only: d n is the foot of the origin in the first plane, e m in the second. It must fulfil both equations.",
       variants: [
         (n, d, m) => ({ point: scaled(n, d), direction: cross(n, m) }),
         (n, _, m, e) => ({ point: scaled(m, e), direction: cross(n, m) }),
       ],
     },
-    {
-      name: "feet added",
+    "feet added": {
       says: "d n + e m lies in neither plane: the normals are not perpendicular to each other, so that each step leaves the other plane.",
       variants: [(n, d, m, e) => ({ point: add(scaled(n, d), m, e), direction: cross(n, m) })],
     },
-    {
-      name: "point and direction exchanged",
+    "point and direction exchanged": {
       says: "The point stands in the place of the direction, and the direction in that of the point.",
       variants: [
         (...input) => {
@@ -113,10 +107,9 @@ function lineFromPlanes(n, d, m, e) {
         },
       ],
     },
-    {
-      name: "distances exchanged",
+    "distances exchanged": {
       says: "d goes with n and e with m; they have changed places.",
       variants: [(n, d, m, e) => meet(n, e, m, d)],
     },
-  ],
-};
+  },
+});

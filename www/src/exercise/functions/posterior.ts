@@ -1,5 +1,5 @@
 /** From evidence to a probability: the statistical foundation that B99 5 asks for. */
-import { type FunctionExercise, numberProblem } from "../judging/judge";
+import { functionExercise, numberProblem } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between } from "../judging/random";
 
@@ -9,8 +9,7 @@ const total = (nats: Vector) => nats.reduce((all, value) => all + value, 0);
 const logOdds = (p: number) => Math.log(p / (1 - p));
 const probability = (odds: number) => odds / (1 + odds);
 
-export const posterior: FunctionExercise<Input, number> = {
-  kind: "function",
+export const posterior = functionExercise<Input, number>({
   name: "posterior",
   title: "From evidence to a probability",
   lesson: "evidence",
@@ -40,14 +39,12 @@ function posterior(prior, nats) {
   },
   formProblem: (answer) => numberProblem(answer, "from 0 to 1"),
   isSame: (a, b) => Math.abs(a - b) < 1e-7 * (1 + Math.abs(a)),
-  mistakes: [
-    {
-      name: "prior forgotten",
+  mistakes: {
+    "prior forgotten": {
       says: "This begins with even odds. A candidate that is seldom true needs more evidence: add ln (prior / (1 − prior)).",
       variants: [(_, nats) => probability(Math.exp(total(nats)))],
     },
-    {
-      name: "probability for odds",
+    "probability for odds": {
       says: "ln prior stands where ln (prior / (1 − prior)) should: it is logarithms of odds that add, not of probabilities.",
       variants: [
         (prior, nats) => probability(Math.exp(Math.log(prior) + total(nats))),
@@ -55,38 +52,32 @@ function posterior(prior, nats) {
         (prior, nats) => Math.min(1, prior * Math.exp(total(nats))),
       ],
     },
-    {
-      name: "odds for a probability",
+    "odds for a probability": {
       says: "These are the odds, which may be larger than 1. Divide them by 1 + odds.",
       variants: [(prior, nats) => Math.exp(logOdds(prior) + total(nats))],
     },
-    {
-      name: "logarithm of the odds",
+    "logarithm of the odds": {
       says: "This is the sum of the logarithms, which may be negative. The exponential makes odds of it, and odds / (1 + odds) the probability.",
       variants: [(prior, nats) => logOdds(prior) + total(nats)],
     },
-    {
-      name: "log10 for ln",
+    "log10 for ln": {
       says: "Logarithms to the base 10 are mixed with natural ones: nats are natural logarithms.",
       variants: [
         (prior, nats) => probability(10 ** (Math.log10(prior / (1 - prior)) + total(nats))),
         (prior, nats) => probability(Math.exp(Math.log10(prior / (1 - prior)) + total(nats))),
       ],
     },
-    {
-      name: "bits for nats",
+    "bits for nats": {
       says: "The powers are those of 2: the evidence is read as bits. One nat is 1.44 bits.",
       variants: [(prior, nats) => probability((prior / (1 - prior)) * 2 ** total(nats))],
     },
-    {
-      name: "mean for sum",
+    "mean for sum": {
       says: "The features are averaged. Each independent one adds what it says.",
       variants: [(prior, nats) => probability(Math.exp(logOdds(prior) + total(nats) / nats.length))],
     },
-    {
-      name: "wrong sign",
+    "wrong sign": {
       says: "This is the probability that the candidate is false: a sign is wrong.",
       variants: [(prior, nats) => 1 - probability(Math.exp(logOdds(prior) + total(nats)))],
     },
-  ],
-};
+  },
+});

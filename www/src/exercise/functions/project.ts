@@ -1,6 +1,6 @@
 /** Where a camera sees a point: x ≃ P X, on which everything rests (B99 3.1; W96 3.2). */
 import { add, apply, type Mat, norm, scaled, sub, transpose } from "../../shared/linear";
-import { type FunctionExercise, vectorProblem } from "../judging/judge";
+import { functionExercise, vectorProblem } from "../judging/judge";
 import { dehomogenised, distance, type Vector } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
@@ -11,8 +11,7 @@ function imageOf(k: Mat, r: Mat, ray: Vector): Vector {
   return dehomogenised(apply(k, apply(r, ray)));
 }
 
-export const project: FunctionExercise<Input, Vector> = {
-  kind: "function",
+export const project = functionExercise<Input, Vector>({
   name: "project",
   title: "The image of a point",
   lesson: "pinhole",
@@ -43,14 +42,12 @@ function project(K, R, C, X) {
   },
   formProblem: (answer) => vectorProblem(answer, 2, "image"),
   isSame: (a, b) => distance(a, b) < 1e-6 * (1 + norm(a)),
-  mistakes: [
-    {
-      name: "R transposed",
+  mistakes: {
+    "R transposed": {
       says: "Rᵀ stands where R should. R takes from the world to the camera; files that state the rotation from the camera to the world have its transpose.",
       variants: [(k, r, c, x) => imageOf(k, transpose(r), sub(x, c))],
     },
-    {
-      name: "C for t",
+    "C for t": {
       says: "This is K (R X + C) or K (R X − C): the centre is in the world's frame and must be turned with the point. Either R (X − C), or R X + t with t = −R C.",
       variants: [1, -1].map(
         (sign) =>
@@ -58,28 +55,23 @@ function project(K, R, C, X) {
             dehomogenised(apply(k, add(apply(r, x), c, -sign))),
       ),
     },
-    {
-      name: "wrong sign",
+    "wrong sign": {
       says: "C is added to X. The ray goes from the centre to the point: X − C.",
       variants: [(k, r, c, x) => imageOf(k, r, add(x, c))],
     },
-    {
-      name: "not divided by the depth",
+    "not divided by the depth": {
       says: "These are the first two homogeneous coordinates. Divide by the third one, the depth.",
       variants: [(k, r, c, x) => apply(k, apply(r, sub(x, c))).slice(0, 2)],
     },
-    {
-      name: "K forgotten",
+    "K forgotten": {
       says: "These are directions in the camera's frame, not pixels: K is missing.",
       variants: [(_, r, c, x) => dehomogenised(apply(r, sub(x, c)))],
     },
-    {
-      name: "principal point forgotten",
+    "principal point forgotten": {
       says: "The result counts from the principal point. Pixels count from the corner of the image: add the third column of K.",
       variants: [(k, r, c, x) => sub(imageOf(k, r, sub(x, c)), [k[0]?.[2] ?? 0, k[1]?.[2] ?? 0])],
     },
-    {
-      name: "half a pixel",
+    "half a pixel": {
       says: "The result is shifted by half a pixel: the principal point is in the coordinates of the image already. The centre of the first pixel is (0.5, 0.5), and nothing is to be added.",
       variants: [0.5, -0.5].map(
         (by) =>
@@ -87,10 +79,9 @@ function project(K, R, C, X) {
             imageOf(k, r, sub(x, c)).map((value) => value + by),
       ),
     },
-    {
-      name: "x and y exchanged",
+    "x and y exchanged": {
       says: "u and v have changed places: u counts to the right, by the first row of K.",
       variants: [(k, r, c, x) => [...imageOf(k, r, sub(x, c))].reverse()],
     },
-  ],
-};
+  },
+});

@@ -1,6 +1,6 @@
 /** A point of two views in a third: what the trifocal tensor does for lines in B99 3.2. */
 import { add, apply, cross, type Mat, norm, transpose } from "../../shared/linear";
-import { type FunctionExercise, vectorProblem } from "../judging/judge";
+import { functionExercise, vectorProblem } from "../judging/judge";
 import { dehomogenised, distance, fundamental, type Vector } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
@@ -18,8 +18,7 @@ function transferred(f: Mat, g: Mat, x: Vector, y: Vector): number[] {
   return meet(apply(f, homogeneous(x)), apply(g, homogeneous(y)));
 }
 
-export const transferPoint: FunctionExercise<Input, Vector> = {
-  kind: "function",
+export const transferPoint = functionExercise<Input, Vector>({
   name: "transferPoint",
   title: "A point in the third view",
   lesson: "trifocal",
@@ -52,29 +51,24 @@ function transferPoint(F, G, x, y) {
   },
   formProblem: (answer) => vectorProblem(answer, 2, "point"),
   isSame: (a, b) => distance(a, b) < 1e-5 * (1 + norm(a)),
-  mistakes: [
-    {
-      name: "transposed",
+  mistakes: {
+    transposed: {
       says: "Fᵀ and Gᵀ stand where F and G should: the transpose takes a point of the third view to a line of another one.",
       variants: [(f, g, x, y) => transferred(transpose(f), transpose(g), x, y)],
     },
-    {
-      name: "views exchanged",
+    "views exchanged": {
       says: "Each point goes with the matrix of its own view: here F is applied to x′, or G to x.",
       variants: [(f, g, x, y) => transferred(f, g, y, x)],
     },
-    {
-      name: "not divided by the third",
+    "not divided by the third": {
       says: "The cross product is homogeneous: its first two numbers are pixels only after a division by the third.",
       variants: [(f, g, x, y) => cross(apply(f, homogeneous(x)), apply(g, homogeneous(y))).slice(0, 2)],
     },
-    {
-      name: "1 forgotten",
+    "1 forgotten": {
       says: "The points are not homogeneous: the third coordinate, 1, is missing, and with it the last column of F and G.",
       variants: [(f, g, x, y) => meet(apply(f, [...x, 0]), apply(g, [...y, 0]))],
     },
-    {
-      name: "lines added",
+    "lines added": {
       says: "The two epipolar lines are added. A sum of lines is a third line through their common point; the point itself is the cross product.",
       variants: [
         (f, g, x, y) => {
@@ -83,8 +77,7 @@ function transferPoint(F, G, x, y) {
         },
       ],
     },
-    {
-      name: "half a pixel",
+    "half a pixel": {
       says: "The points are shifted by half a pixel before, or the result after it. F and G are those of the images' own coordinates.",
       variants: [0.5, -0.5].flatMap((by) => [
         (...[f, g, x, y]: Input) =>
@@ -97,5 +90,5 @@ function transferPoint(F, G, x, y) {
         (...input: Input) => transferred(...input).map((value) => value + by),
       ]),
     },
-  ],
-};
+  },
+});

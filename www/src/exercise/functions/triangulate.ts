@@ -1,6 +1,6 @@
 /** A point in space from two views: what every 3D line of B99 3.2 rests on. */
 import { type Mat, norm } from "../../shared/linear";
-import { type FunctionExercise, vectorProblem } from "../judging/judge";
+import { functionExercise, vectorProblem } from "../judging/judge";
 import { distance, leastSquares, type Vector } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
@@ -25,8 +25,7 @@ function triangulated(p: Mat, x: Vector, q: Mat, y: Vector, sign = 1): Vector {
 const shifted = ([u = 0, v = 0]: Vector, by: number): number[] => [u + by, v + by];
 const swapped = ([u = 0, v = 0]: Vector): number[] => [v, u];
 
-export const triangulate: FunctionExercise<Input, Vector> = {
-  kind: "function",
+export const triangulate = functionExercise<Input, Vector>({
   name: "triangulate",
   title: "A point from two views",
   lesson: "triangulation",
@@ -66,9 +65,8 @@ function triangulate(P, x, Q, y) {
   },
   formProblem: (answer) => vectorProblem(answer, 3, "point"),
   isSame: (a, b) => distance(a, b) < 1e-5 * (1 + norm(a)),
-  mistakes: [
-    {
-      name: "half a pixel",
+  mistakes: {
+    "half a pixel": {
       says: "The point is where it would be if the images were shifted by half a pixel. The centre of the first pixel is (0.5, 0.5), in images and projections alike: nothing is to be added.",
       variants: [0.5, -0.5].map(
         (by) =>
@@ -76,25 +74,21 @@ function triangulate(P, x, Q, y) {
             triangulated(p, shifted(x, by), q, shifted(y, by)),
       ),
     },
-    {
-      name: "x and y exchanged",
+    "x and y exchanged": {
       says: "u belongs to the first row of P and v to the second; they have changed places.",
       variants: [(p, x, q, y) => triangulated(p, swapped(x), q, swapped(y))],
     },
-    {
-      name: "wrong sign",
+    "wrong sign": {
       says: "The equations are differences, u p₃ − p₁, not sums: the sign of p₁ and p₂ is wrong.",
       variants: [(p, x, q, y) => triangulated(p, x, q, y, -1)],
     },
-    {
-      name: "views exchanged",
+    "views exchanged": {
       says: "Each image point goes with the projection of its own view: here x is used with P′, and x′ with P.",
       variants: [(p, x, q, y) => triangulated(p, y, q, x)],
     },
-    {
-      name: "sign of the right side",
+    "sign of the right side": {
       says: "The point is mirrored at the origin: with the fourth coordinate 1, the fourth column goes to the other side of the equations and changes its sign.",
       variants: [(...input) => triangulated(...input).map((value) => -value)],
     },
-  ],
-};
+  },
+});

@@ -2,7 +2,7 @@
  * Judges functions that are to be written. An answer is right where it holds for planted configurations, whatever its formula is; a wrong
  * one is compared with what the usual mistakes would have answered.
  */
-import type { About, NamedMistake, Verdict } from "./about";
+import type { About, Verdict } from "./about";
 import type { Random } from "./random";
 
 interface Planted<Input extends readonly unknown[], Answer> {
@@ -11,7 +11,9 @@ interface Planted<Input extends readonly unknown[], Answer> {
   error(answer: Answer): number;
 }
 
-export interface Mistake<Input extends readonly unknown[], Answer> extends NamedMistake {
+export interface Mistake<Input extends readonly unknown[], Answer> {
+  /** What was done, and what is to be done instead. */
+  says: string;
   /** What it answers; several ways to make it are one mistake. */
   variants: readonly ((...input: Input) => Answer)[];
 }
@@ -30,7 +32,14 @@ export interface FunctionExercise<Input extends readonly unknown[], Answer> exte
   /** What is wrong with the form of an answer; null where it can be judged. */
   formProblem(answer: unknown): string | null;
   isSame(a: Answer, b: Answer): boolean;
-  mistakes: readonly Mistake<Input, Answer>[];
+  /** By their names. */
+  mistakes: Readonly<Record<string, Mistake<Input, Answer>>>;
+}
+
+export function functionExercise<Input extends readonly unknown[], Answer>(
+  of: Omit<FunctionExercise<Input, Answer>, "kind">,
+): FunctionExercise<Input, Answer> {
+  return { kind: "function", ...of };
 }
 
 /** Judges the answers to planted configurations, one each. */
@@ -50,13 +59,14 @@ export function judge<Input extends readonly unknown[], Answer>(
   if (errors.every((error) => error <= exercise.limit)) {
     return { kind: "right" };
   }
-  const made = exercise.mistakes.find(({ variants }) =>
+  const made = Object.entries(exercise.mistakes).find(([, { variants }]) =>
     variants.some((variant) =>
       planted.every((one, i) => exercise.isSame(variant(...one.input), given[i] as Answer)),
     ),
   );
   if (made !== undefined) {
-    return { kind: "mistake", name: made.name, says: made.says };
+    const [name, { says }] = made;
+    return { kind: "mistake", name, says };
   }
   const error = Math.max(...errors);
   const count = errors.filter((one) => one > exercise.limit).length;

@@ -1,27 +1,16 @@
 /** The linear algebra of the exercises beyond that of all pages: in the plain arrays that a student writes. */
 import {
-  add,
   apply,
   crossMatrix,
   determinant,
   dot,
   inverse,
   type Mat,
-  scaled,
   times,
   transpose,
 } from "../../shared/linear";
 
 export type Vector = readonly number[];
-
-export function sum(a: Mat, b: Mat, factor = 1): Mat {
-  return a.map((row, i) => add(row, b[i] as Vector, factor));
-}
-
-/** a bᵀ */
-export function outer(a: Vector, b: Vector): Mat {
-  return a.map((x) => scaled(b, x));
-}
 
 /** The centre of a 3 x 4 projection, homogeneous: P C = 0. */
 export function centreOf(projection: Mat): Vector {

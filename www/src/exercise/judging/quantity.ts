@@ -1,37 +1,19 @@
 /** A number with its unit, as a person writes it. */
+import { DEGREE } from "../../shared/linear";
 
-/** Of each unit: what it measures, and how many of the first unit of its kind it is. */
+/** Of each unit: what it measures, how many of the first unit of its kind it is, and what people write for it. */
 const UNITS = {
-  m: { kind: "length", factor: 1 },
-  cm: { kind: "length", factor: 0.01 },
-  mm: { kind: "length", factor: 0.001 },
-  px: { kind: "length in the image", factor: 1 },
-  deg: { kind: "angle", factor: Math.PI / 180 },
-  rad: { kind: "angle", factor: 1 },
-  nats: { kind: "information", factor: 1 },
-  bits: { kind: "information", factor: Math.LN2 },
+  m: { kind: "length", factor: 1, words: ["metre", "metres", "meter", "meters"] },
+  cm: { kind: "length", factor: 0.01, words: ["centimetres"] },
+  mm: { kind: "length", factor: 0.001, words: ["millimetres"] },
+  px: { kind: "length in the image", factor: 1, words: ["pixel", "pixels"] },
+  deg: { kind: "angle", factor: DEGREE, words: ["°", "degree", "degrees"] },
+  rad: { kind: "angle", factor: 1, words: ["radian", "radians"] },
+  nats: { kind: "information", factor: 1, words: ["nat"] },
+  bits: { kind: "information", factor: Math.LN2, words: ["bit"] },
 } as const;
 
 export type Unit = keyof typeof UNITS;
-
-/** What people write for a unit. */
-const WORDS: Readonly<Record<string, Unit>> = {
-  metre: "m",
-  metres: "m",
-  meter: "m",
-  meters: "m",
-  centimetres: "cm",
-  millimetres: "mm",
-  pixel: "px",
-  pixels: "px",
-  "°": "deg",
-  degree: "deg",
-  degrees: "deg",
-  radian: "rad",
-  radians: "rad",
-  nat: "nats",
-  bit: "bits",
-};
 
 export interface Quantity {
   value: number;
@@ -64,11 +46,8 @@ export function readQuantity(text: string): Read {
 
 function unitOf(word: string): Unit | null {
   const lower = word.toLowerCase().replace(/\.$/, "");
-  return Object.hasOwn(UNITS, lower)
-    ? (lower as Unit)
-    : Object.hasOwn(WORDS, lower)
-      ? (WORDS[lower] ?? null)
-      : null;
+  const units = Object.keys(UNITS) as Unit[];
+  return units.find((unit) => unit === lower || UNITS[unit].words.some((one) => one === lower)) ?? null;
 }
 
 export function kindOf(unit: Unit): string {

@@ -1,5 +1,5 @@
 /** Planted configurations: random, but the same from the same seed. */
-import { apply, type Mat, scaled, times } from "../../shared/linear";
+import { apply, crossMatrix, type Mat, scaled, times } from "../../shared/linear";
 import { dehomogenised } from "./linear";
 
 export type Random = () => number;
@@ -50,7 +50,8 @@ export function plantedCamera(random: Random): PlantedCamera {
     [0, 0, -1],
   ];
   const tilt = () => between(random, 0.05, 0.15) * (random() < 0.5 ? -1 : 1);
-  const r = times(turnX(tilt()), times(turnY(tilt()), times(down, turnZ(between(random, 0.3, 1.2)))));
+  const [x, y] = [turn(0, tilt()), turn(1, tilt())];
+  const r = times(x, times(y, times(down, turn(2, between(random, 0.3, 1.2)))));
   const t = scaled(apply(r, centre), -1);
   return { k, r, t, projection: projectionOf(k, r, t) };
 }
@@ -73,29 +74,9 @@ export function plantedPoint(random: Random): [number, number, number] {
   return [between(random, -15, 15), between(random, -15, 15), between(random, 0, 12)];
 }
 
-function turnX(angle: number): Mat {
+/** The rotation about an axis: cos I + sin [a]x, and 1 where the axis meets itself. */
+function turn(axis: 0 | 1 | 2, angle: number): Mat {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
-  return [
-    [1, 0, 0],
-    [0, c, -s],
-    [0, s, c],
-  ];
-}
-
-function turnY(angle: number): Mat {
-  const [c, s] = [Math.cos(angle), Math.sin(angle)];
-  return [
-    [c, 0, s],
-    [0, 1, 0],
-    [-s, 0, c],
-  ];
-}
-
-function turnZ(angle: number): Mat {
-  const [c, s] = [Math.cos(angle), Math.sin(angle)];
-  return [
-    [c, -s, 0],
-    [s, c, 0],
-    [0, 0, 1],
-  ];
+  const across = crossMatrix([0, 0, 0].with(axis, s));
+  return across.map((row, i) => row.with(i, i === axis ? 1 : c));
 }

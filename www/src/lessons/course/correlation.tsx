@@ -1,10 +1,22 @@
 /** Lesson 3: are two windows the same piece of the world? */
 import { computed, signal } from "@preact/signals";
-import { Choice } from "../../app/parts/Choice";
 import { apply3, cross, homogeneous, lineThrough, mix, nearestParameter, point2 } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Bar, Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider, WindowCard } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
+import {
+  Bar,
+  Curve,
+  Dot,
+  Drawing,
+  Grey,
+  Handle,
+  Label,
+  Line,
+  Plot,
+  Slider,
+  Switch,
+  WindowCard,
+} from "../parts/draw";
+import { type Lesson, onScene } from "../parts/lesson";
 import { metres, num, pixels } from "../parts/say";
 import { ImageLine } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
@@ -65,14 +77,8 @@ function LightFigure({ isRevealed }: { isRevealed: boolean }) {
         <WindowCard values={reference.value} size={SIZE} colour={1} title="First view" />
         <WindowCard values={values} size={SIZE} colour={2} title="Second view" />
       </div>
-      <Slider symbol="gain" label="contrast" of={gain} range={[0.2, 1.4, 0.05]} says={num(gain.value, 2)} />
-      <Slider
-        symbol="offset"
-        label="brightness"
-        of={offset}
-        range={[-60, 80, 2]}
-        says={num(offset.value, 0)}
-      />
+      <Slider symbol="gain" label="contrast" of={gain} range={[0.2, 1.4, 0.05]} />
+      <Slider symbol="offset" label="brightness" of={offset} range={[-60, 80, 2]} />
       {isRevealed && (
         <p class="muted">
           Without normalising, the mean squared difference is {num(meanSquare(reference.value, values), 0)}{" "}
@@ -143,10 +149,8 @@ function AlongFigure() {
         </Picture>
       </div>
       <Plot
-        x={{ min: LOW, max: HIGH }}
-        y={{ min: -0.6, max: 1 }}
-        xTitle="height on the epipolar line, m"
-        yTitle="correlation"
+        x={[LOW, HIGH, "height on the epipolar line, m"]}
+        y={[-0.6, 1, "correlation"]}
         label="Correlation along the epipolar line"
         height={210}
       >
@@ -158,12 +162,13 @@ function AlongFigure() {
           </>
         )}
       </Plot>
-      <Slider label="side of the window" of={size} range={[3, 31, 2]} says={pixels(size.value, 0)} />
+      <Slider label="side of the window" of={size} range={[3, 31, 2]} suffix=" px" />
     </>
   );
 }
 
-type Shape = "none" | "level" | "roof";
+const SHAPES = { none: "As a square", level: "By a level plane", roof: "By the roof's plane" } as const;
+type Shape = keyof typeof SHAPES;
 const shape = signal<Shape>("none");
 const WARPED = 25;
 const shaped = (of: Shape) => {
@@ -181,15 +186,7 @@ function WarpFigure() {
   const values = shaped(shape.value);
   return (
     <>
-      <Choice
-        legend="How the window is taken"
-        choices={[
-          ["none", "As a square"],
-          ["level", "By a level plane"],
-          ["roof", "By the roof's plane"],
-        ]}
-        of={shape}
-      />
+      <Switch legend="How the window is taken" names={SHAPES} of={shape} />
       <div class="windows-row">
         <WindowCard values={large.value} size={WARPED} colour={1} title="First view" />
         <WindowCard
@@ -262,7 +259,8 @@ function PointFigure() {
   );
 }
 
-type Side = "both" | "roof" | "ground";
+const SIDES = { both: "Whole windows", roof: "The roof's side", ground: "The ground's side" } as const;
+type Side = keyof typeof SIDES;
 const side = signal<Side>("both");
 const THRESHOLD = 0.6;
 const EDGELS = 36;
@@ -288,20 +286,10 @@ const kept = () => edgels.value.filter((c) => c > THRESHOLD);
 function EdgelFigure() {
   return (
     <>
-      <Choice
-        legend="Side of the line"
-        choices={[
-          ["both", "Whole windows"],
-          ["roof", "The roof's side"],
-          ["ground", "The ground's side"],
-        ]}
-        of={side}
-      />
+      <Switch legend="Side of the line" names={SIDES} of={side} />
       <Plot
-        x={{ min: 0, max: EDGELS }}
-        y={{ min: -0.5, max: 1 }}
-        xTitle="edgel along the eave"
-        yTitle="correlation"
+        x={[0, EDGELS, "edgel along the eave"]}
+        y={[-0.5, 1, "correlation"]}
         label="Correlation of every edgel of the eave"
       >
         {({ at, level }) => (
@@ -315,9 +303,7 @@ function EdgelFigure() {
               />
             ))}
             <Line {...level(THRESHOLD)} class="s7 dashed" />
-            <Label at={at([EDGELS, THRESHOLD])} dy={-5} anchor="end" class="s7">
-              0.6
-            </Label>
+            <Label at={at([EDGELS, THRESHOLD])} dy={-5} anchor="end" class="s7" text="0.6" />
           </>
         )}
       </Plot>
@@ -416,14 +402,8 @@ export const CORRELATION: Lesson = {
       says: () =>
         `${{ both: "With whole windows", roof: "On the roof's side", ground: "On the ground's side" }[side.value]} ${kept().length} of ${EDGELS} edgels count${kept().length === 0 ? "" : `, and their mean is ${num(meanOf(kept()), 2)}`}. ${kept().length >= 15 ? "That is a match." : "That is no match."}`,
     },
-    {
-      id: "own",
-      title: "Candidates of a whole scene",
-      prose: () => [
-        "The picked segment, its candidates in the other views with their scores, and the two windows. Drag the point along the segment.",
-      ],
-      figure: realFigure("correlation-windows"),
-      isReal: true,
-    },
+    onScene("own", "Candidates of a whole scene", realFigure("correlation-windows"), [
+      "The picked segment, its candidates in the other views with their scores, and the two windows. Drag the point along the segment.",
+    ]),
   ],
 };

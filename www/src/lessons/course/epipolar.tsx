@@ -3,7 +3,6 @@ import { signal } from "@preact/signals";
 import {
   add,
   apply3,
-  clamp,
   DEGREE,
   determinant,
   distance2,
@@ -15,9 +14,9 @@ import {
   scaled,
 } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
-import { Dot, Handle, Label, Line, Shape, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
-import { degrees, metres, num, pixels, place } from "../parts/say";
+import { Dot, Handle, Label, Line, PointHandle, Shape, Slider } from "../parts/draw";
+import { type Lesson, onScene } from "../parts/lesson";
+import { metres, num, pixels, place } from "../parts/say";
 import { ImageLine, ImagePane, Space, seen } from "../parts/scene";
 import { LinesInViews } from "../scene/LinesInViews";
 import { realFigure } from "../scene/RealFigure";
@@ -28,7 +27,7 @@ const [FIRST, SECOND] = VIEWS;
 const F = fundamental(projection(FIRST), projection(SECOND));
 const [WIDTH, HEIGHT] = [FIRST.width, FIRST.height];
 
-const inside = ([x, y]: Vec2): Vec2 => [clamp(x, 4, WIDTH - 4), clamp(y, 4, HEIGHT - 4)];
+const INSIDE = { size: FIRST, margin: 4 } as const;
 
 /** The bird: seen at this place, at a height that only the lesson knows. */
 const BIRD: Vec2 = [196, 172];
@@ -45,21 +44,12 @@ function BirdFigure({ isRevealed }: { isRevealed: boolean }) {
     <div class="pair">
       <ImagePane camera={FIRST} colour={1}>
         <Dot at={BIRD} class="s1" />
-        <Label at={BIRD} dx={9} dy={5} class="s1 vector">
-          x
-        </Label>
+        <Label at={BIRD} dx={9} dy={5} class="s1 vector" text="x" />
       </ImagePane>
       <ImagePane camera={SECOND} colour={2}>
         {isRevealed && <EpipolarLine of={BIRD} />}
         {isRevealed && <Dot at={imageOf(SECOND, bird)} class="s2" />}
-        <Handle
-          at={guess.value}
-          class="s6"
-          label="Your guess in the second view"
-          says={place(guess.value, 0)}
-          of={guess}
-          to={(to) => inside(to)}
-        />
+        <PointHandle of={guess} {...INSIDE} class="s6" label="Your guess in the second view" />
       </ImagePane>
     </div>
   );
@@ -85,17 +75,13 @@ function RayFigure() {
           of={depth}
           to={(to) => nearestParameter((s) => seen(ray(s)), near, far, to)}
         />
-        <Label at={seen(X)} dx={12} dy={-6} class="s4 vector">
-          X
-        </Label>
+        <Label at={seen(X)} dx={12} dy={-6} class="s4 vector" text="X" />
       </Space>
       <ImagePane camera={SECOND} label="The ray in the second view" colour={2}>
         <EpipolarLine of={BIRD} class="s2 faint" />
         <Line from={imageOf(SECOND, ray(near))} to={imageOf(SECOND, X)} class="s2" />
         <Dot at={imageOf(SECOND, X)} class="s2" />
-        <Label at={imageOf(SECOND, X)} dx={9} dy={-7} class="s2 vector">
-          x′
-        </Label>
+        <Label at={imageOf(SECOND, X)} dx={9} dy={-7} class="s2 vector" text="x′" />
       </ImagePane>
     </div>
   );
@@ -113,25 +99,11 @@ function ConstraintFigure() {
   return (
     <div class="pair">
       <ImagePane camera={FIRST} colour={1}>
-        <Handle
-          at={left.value}
-          class="s1"
-          label="x in the first view"
-          says={place(left.value, 0)}
-          of={left}
-          to={(to) => inside(to)}
-        />
+        <PointHandle of={left} {...INSIDE} class="s1" label="x in the first view" />
       </ImagePane>
       <ImagePane camera={SECOND} colour={2}>
         <EpipolarLine of={left.value} />
-        <Handle
-          at={right.value}
-          class="s2"
-          label="x′ in the second view"
-          says={place(right.value, 0)}
-          of={right}
-          to={(to) => inside(to)}
-        />
+        <PointHandle of={right} {...INSIDE} class="s2" label="x′ in the second view" />
       </ImagePane>
     </div>
   );
@@ -182,7 +154,7 @@ function PencilFigure({ isRevealed }: { isRevealed: boolean }) {
           of={rise}
           unit={DEGREE}
           range={[0, 90, 1]}
-          says={`${degrees(rise.value)} upwards`}
+          suffix="° upwards"
         />
       )}
     </>
@@ -347,25 +319,18 @@ export const EPIPOLAR: Lesson = {
         return `From ${metres(low)} to ${metres(high)} the beam is ${pixels(length, 0)} long: ${pixels(length / (high - low))} for a metre of height.`;
       },
     },
-    {
-      id: "own",
-      title: "Lines on whole photographs",
-      prose: () => [
+    onScene(
+      "own",
+      "Lines on whole photographs",
+      LinesInViews,
+      [
         "Drag the mark to the corner of a roof. Its epipolar line passes through the same corner in every other photograph: check it.",
         "Where it does not, the orientation is wrong. This is how ridgeline finds out.",
       ],
-      formula: () => "le = F x",
-      figure: LinesInViews,
-      isReal: true,
-    },
-    {
-      id: "beams",
-      title: "Beams in use",
-      prose: () => [
-        "Here the core matches segments: the picked one, its beam, and the candidates in it. Pick another segment; drag the point along it.",
-      ],
-      figure: realFigure("epipolar-beam"),
-      isReal: true,
-    },
+      "le = F x",
+    ),
+    onScene("beams", "Beams in use", realFigure("epipolar-beam"), [
+      "Here the core matches segments: the picked one, its beam, and the candidates in it. Pick another segment; drag the point along it.",
+    ]),
   ],
 };

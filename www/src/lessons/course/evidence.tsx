@@ -4,7 +4,7 @@ import { counted } from "../../app/parts/counted";
 import { clamp } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import { Bar, Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
+import { type Lesson, onScene } from "../parts/lesson";
 import { num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
 import {
@@ -28,23 +28,19 @@ function DensitiesFigure({ isRevealed }: { isRevealed: boolean }) {
   const c = correlation.value;
   const [on, off] = [density(ON_PLANE, c), density(OFF_PLANE, c)];
   return (
-    <Plot
-      x={{ min: -1, max: 1 }}
-      y={{ min: 0, max: 2.6 }}
-      xTitle="correlation"
-      yTitle="density"
-      label="Correlations on a plane and beside it"
-    >
+    <Plot x={[-1, 1, "correlation"]} y={[0, 2.6, "density"]} label="Correlations on a plane and beside it">
       {({ at, under, upright }) => (
         <>
           <Curve points={STEPS.map((x): Vec2 => at([x, density(OFF_PLANE, x)]))} class="s7" />
           <Curve points={STEPS.map((x): Vec2 => at([x, density(ON_PLANE, x)]))} class="s4" />
-          <Label at={at([0, density(OFF_PLANE, 0)])} dy={-8} anchor="middle" class="s7">
-            beside the plane
-          </Label>
-          <Label at={at([0.62, 2.2])} anchor="end" class="s4">
-            on the plane
-          </Label>
+          <Label
+            at={at([0, density(OFF_PLANE, 0)])}
+            dy={-8}
+            anchor="middle"
+            class="s7"
+            text="beside the plane"
+          />
+          <Label at={at([0.62, 2.2])} anchor="end" class="s4" text="on the plane" />
           <Line {...upright(0.6)} class="rule dashed" />
           {isRevealed && (
             <>
@@ -88,12 +84,14 @@ function Bars({ all, label }: { all: readonly (readonly [name: string, nats: num
           <g key={name}>
             {i === rows.length - 1 && <Line from={[20, y - 1]} to={[460, y - 1]} class="rule" />}
             <Bar from={[middle, y + 4]} to={[to, y + row - 6]} class={nats < 0 ? "s7" : "s4"} />
-            <Label at={[76, y + 15]} dy={5} anchor="end">
-              {name}
-            </Label>
-            <Label at={[Math.max(to, middle), y + 15]} dx={6} dy={5} class={nats < 0 ? "s7" : "s4"}>
-              {signed(nats)}
-            </Label>
+            <Label at={[76, y + 15]} dy={5} anchor="end" text={name} />
+            <Label
+              at={[Math.max(to, middle), y + 15]}
+              dx={6}
+              dy={5}
+              class={nats < 0 ? "s7" : "s4"}
+              text={signed(nats)}
+            />
           </g>
         );
       })}
@@ -158,29 +156,29 @@ function WeakFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
       <Plot
-        x={{ min: -4, max: 10 }}
-        y={{ min: 0, max: 0.45 }}
-        xTitle="contrast over its standard deviation, all views together"
-        yTitle="density"
+        x={[-4, 10, "contrast over its standard deviation, all views together"]}
+        y={[0, 0.45, "density"]}
         label="Contrast across an edge that is there, and across nothing"
       >
         {({ at }) => (
           <>
             <Curve points={xs.map((x): Vec2 => at([x, bell(x, 0)]))} class="s7" />
             <Curve points={xs.map((x): Vec2 => at([x, bell(x, joint)]))} class="s4" />
-            <Label at={at([0, 0.4])} dy={-8} anchor="middle" class="s7">
-              nothing
-            </Label>
-            <Label at={at([joint, 0.4])} dy={-8} anchor="middle" class="s4">
-              {n === 1 ? "an edge" : counted(n, "views")}
-            </Label>
+            <Label at={at([0, 0.4])} dy={-8} anchor="middle" class="s7" text="nothing" />
+            <Label
+              at={at([joint, 0.4])}
+              dy={-8}
+              anchor="middle"
+              class="s4"
+              text={n === 1 ? "an edge" : counted(n, "views")}
+            />
           </>
         )}
       </Plot>
       {isRevealed && (
         <>
-          <Slider symbol="mu" label="in each view" of={contrast} range={[0.5, 4, 0.1]} says={`${num(z)} σ`} />
-          <Slider symbol="N" label="views" of={viewCount} range={[1, 6, 1]} says={num(viewCount.value, 0)} />
+          <Slider symbol="mu" label="in each view" of={contrast} range={[0.5, 4, 0.1]} suffix=" σ" />
+          <Slider symbol="N" label="views" of={viewCount} range={[1, 6, 1]} />
         </>
       )}
     </>
@@ -235,10 +233,8 @@ function ReliabilityFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
       <Plot
-        x={{ min: 0, max: 1 }}
-        y={{ min: 0, max: 1 }}
-        xTitle="stated probability"
-        yTitle="share that is true"
+        x={[0, 1, "stated probability"]}
+        y={[0, 1, "share that is true"]}
         label="How many candidates are true, by what was stated of them"
         height={320}
       >
@@ -256,14 +252,7 @@ function ReliabilityFigure({ isRevealed }: { isRevealed: boolean }) {
           </>
         )}
       </Plot>
-      {isRevealed && (
-        <Slider
-          label="times that each window is counted"
-          of={copies}
-          range={[1, 6, 1]}
-          says={num(copies.value, 0)}
-        />
-      )}
+      {isRevealed && <Slider label="times that each window is counted" of={copies} range={[1, 6, 1]} />}
     </>
   );
 }
@@ -328,9 +317,7 @@ export const EVIDENCE: Lesson = {
         question:
           "Five views, 2.5 standard deviations each, added up at the place where the hip would be. How many standard deviations is that together?",
         unit: "σ",
-        min: 1,
-        max: 13,
-        step: 0.1,
+        range: [1, 13, 0.1],
         truth: () => 2.5 * Math.sqrt(5),
         within: 0.5,
         why: () =>
@@ -383,14 +370,8 @@ export const EVIDENCE: Lesson = {
       says: () =>
         `Counted ${copies.value === 1 ? "once" : `${copies.value} times`}: of those called 90 % sure or more, ${percent(ofSure())} are true.`,
     },
-    {
-      id: "own",
-      title: "The posterior of a half-plane",
-      prose: () => [
-        "B99 wished for “a posterior estimate for the plane angle and the likelihood that a plane is there”. The grey area is that: as high as the probability of a plane, as wide as its angle is uncertain. Compare lines with much and with little texture.",
-      ],
-      figure: realFigure("theta-sweep"),
-      isReal: true,
-    },
+    onScene("own", "The posterior of a half-plane", realFigure("theta-sweep"), [
+      "B99 wished for “a posterior estimate for the plane angle and the likelihood that a plane is there”. The grey area is that: as high as the probability of a plane, as wide as its angle is uncertain. Compare lines with much and with little texture.",
+    ]),
   ],
 };

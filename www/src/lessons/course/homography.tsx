@@ -1,11 +1,23 @@
 /** Lesson 7: a plane maps image to image; one angle of it is free, and the images choose it. */
 import { computed, signal } from "@preact/signals";
-import { Choice } from "../../app/parts/Choice";
 import { clamp, DEGREE, distance2 } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider, WindowCard } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
-import { degrees, num, pixels, place } from "../parts/say";
+import {
+  Curve,
+  Dot,
+  Drawing,
+  Handle,
+  inMetres,
+  Label,
+  Line,
+  Plot,
+  PointHandle,
+  Slider,
+  Switch,
+  WindowCard,
+} from "../parts/draw";
+import { type Lesson, onScene } from "../parts/lesson";
+import { degrees, num, pixels } from "../parts/say";
 import { ImagePane } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { type Camera, imageOf, mapped, planeHomography } from "../toy/camera";
@@ -17,7 +29,8 @@ const SECOND = aerial([7, -5, 42]);
 const NEAR = aerial([0, -7.5, 42]);
 const FAR = aerial([13, 3, 40]);
 
-type PlaneName = "roof" | "ground";
+const PLANES = { roof: "H of the south roof", ground: "H of the ground" } as const;
+type PlaneName = keyof typeof PLANES;
 const plane = signal<PlaneName>("roof");
 const at = signal<Vec2>([150, 130]);
 const planeOf = (name: PlaneName) =>
@@ -32,63 +45,47 @@ const really = () => imageOf(SECOND, surfaceAt(FIRST, at.value).X);
 function PlaneFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
-      {isRevealed && (
-        <Choice
-          legend="Plane of the homography"
-          choices={[
-            ["roof", "H of the south roof"],
-            ["ground", "H of the ground"],
-          ]}
-          of={plane}
-        />
-      )}
+      {isRevealed && <Switch legend="Plane of the homography" names={PLANES} of={plane} />}
       <div class="pair">
         <ImagePane camera={FIRST} colour={1}>
-          <Handle
-            at={at.value}
-            class="s1"
-            label="Point x"
-            says={place(at.value, 0)}
-            of={at}
-            to={([x, y]): Vec2 => [clamp(x, 5, FIRST.width - 5), clamp(y, 5, FIRST.height - 5)]}
-            isFixed={!isRevealed}
-          />
+          <PointHandle of={at} size={FIRST} margin={5} class="s1" label="Point x" isFixed={!isRevealed} />
         </ImagePane>
         <ImagePane camera={SECOND} colour={2}>
           <Line from={taken()} to={really()} class="s7" />
           <Dot at={really()} class="s2" />
           <Dot at={taken()} class="s6" />
-          <Label at={taken()} dx={9} dy={-7} class="s6">
-            Hx
-          </Label>
+          <Label at={taken()} dx={9} dy={-7} class="s6" text="Hx" />
         </ImagePane>
       </div>
     </>
   );
 }
 
+/** A function that works once for each of its arguments. */
+function remembered<Args extends readonly unknown[], Made>(make: (...of: Args) => Made) {
+  const known = new Map<string, Made>();
+  return (...of: Args): Made => {
+    const made = known.get(of.join()) ?? make(...of);
+    known.set(of.join(), made);
+    return made;
+  };
+}
+
 /** Of the camera, grey values: without it the faintest texture would correlate as well as the strongest. */
 const NOISE = 4;
 /** How much texture the roof has; pictures are made again for each amount. */
 const texture = signal(1);
-const madeWith = new Map<number, readonly Shot[]>();
 interface Shot {
   camera: Camera;
   picture: ReturnType<typeof photograph>;
 }
-const shots = computed(() => {
-  const own = texture.value;
-  const known = madeWith.get(own);
-  if (known !== undefined) {
-    return known;
-  }
-  const made = [FIRST, SECOND, NEAR, FAR].map((camera) => ({
+const shotsWith = remembered((own: number): readonly Shot[] =>
+  [FIRST, SECOND, NEAR, FAR].map((camera) => ({
     camera,
     picture: photograph(camera, { texture: own, noise: NOISE }),
-  }));
-  madeWith.set(own, made);
-  return made;
-});
+  })),
+);
+const shots = computed(() => shotsWith(texture.value));
 const shot = (i: number) => shots.value[i] as Shot;
 
 const theta = signal(5 * DEGREE);
@@ -104,11 +101,8 @@ const warped = (angle: number) => {
   return warpedWindow(shot(1).picture, planeHomography(FIRST, SECOND, n, d), [x, y], size);
 };
 
-const SECTION = { width: 320, height: 250, scale: 16, x: 70, y: 190 } as const;
-const inSection = (y: number, z: number): Vec2 => [
-  SECTION.x + SECTION.scale * (y + 4),
-  SECTION.y - SECTION.scale * (z - 5),
-];
+const SECTION = inMetres(320, 250, 16, [70, 190]);
+const inSection = (y: number, z: number): Vec2 => SECTION.at(y + 4, z - 5);
 const FAN_M = 9;
 
 /** The roof cut across, with the half-plane that is tried. */
@@ -128,12 +122,8 @@ function Section({ isRevealed }: { isRevealed: boolean }) {
       <Line from={foot} to={inSection(8, 5)} class="rule" />
       <Line from={foot} to={end} class="s6 thick" />
       <Dot at={foot} class="s4" />
-      <Label at={foot} dx={-8} dy={-8} anchor="end" class="s4 letter">
-        L
-      </Label>
-      <Label at={end} dx={14} dy={4} class="s6">
-        <tspan class="letter">θ</tspan> = {degrees(angle)}
-      </Label>
+      <Label at={foot} dx={-8} dy={-8} anchor="end" class="s4 letter" text="L" />
+      <Label at={end} dx={14} dy={4} class="s6" letter="θ" text={`= ${degrees(angle)}`} />
       <Handle
         at={end}
         class="s6"
@@ -191,7 +181,8 @@ function GuessFigure({ isRevealed }: { isRevealed: boolean }) {
   );
 }
 
-type Side = "roof" | "ground";
+const SIDES = { roof: "The roof's side", ground: "The other side" } as const;
+type Side = keyof typeof SIDES;
 const side = signal<Side>("roof");
 /** Points of interest: a grid beside the eave, upwards on the roof or downwards before it. */
 const pointsOf = (of: Side): InterestPoint[] =>
@@ -205,20 +196,10 @@ const pointsOf = (of: Side): InterestPoint[] =>
 const ANGLES = Array.from({ length: 61 }, (_, i) => (-75 + 2.5 * i) * DEGREE);
 const curves = computed(() => {
   const all = shots.value;
-  const cache = new Map<string, number[]>();
-  return (of: Side, other: number) => {
-    const key = `${of} ${other}`;
-    const known = cache.get(key);
-    if (known !== undefined) {
-      return known;
-    }
+  return remembered((of: Side, other: number) => {
     const points = pointsOf(of);
-    const made = ANGLES.map((angle) =>
-      similarity(all[0] as Shot, all[other] as Shot, SOUTH_EAVE, angle, points),
-    );
-    cache.set(key, made);
-    return made;
-  };
+    return ANGLES.map((angle) => similarity(all[0] as Shot, all[other] as Shot, SOUTH_EAVE, angle, points));
+  });
 });
 const curveOf = (of: Side, other: number) => curves.value(of, other);
 
@@ -230,10 +211,8 @@ function SimPlot(props: {
   const { curves: all, isAtTheta = false } = props;
   return (
     <Plot
-      x={{ min: -75, max: 75 }}
-      y={{ min: 0, max: 1 }}
-      xTitle="θ, degrees"
-      yTitle="Sim(θ)"
+      x={[-75, 75, "θ, degrees"]}
+      y={[0, 1, "Sim(θ)"]}
       label="Similarity against the angle of the half-plane"
       height={230}
     >
@@ -269,14 +248,7 @@ const failed = () => {
 function AcceptFigure() {
   return (
     <>
-      <Choice
-        legend="Side of the eave"
-        choices={[
-          ["roof", "The roof's side"],
-          ["ground", "The other side"],
-        ]}
-        of={side}
-      />
+      <Switch legend="Side of the eave" names={SIDES} of={side} />
       <SimPlot curves={[{ values: curveOf(side.value, 1), class: "s6" }]} />
       <Slider
         label="texture of the roof"
@@ -395,14 +367,8 @@ export const HOMOGRAPHY: Lesson = {
       says: () =>
         `Near: peak ${num(Math.max(...curveOf("roof", 2)), 2)}, half of it over ${num(widthOf(curveOf("roof", 2)), 0)}°. Far: peak ${num(Math.max(...curveOf("roof", 3)), 2)}, half of it over ${num(widthOf(curveOf("roof", 3)), 0)}°.`,
     },
-    {
-      id: "own",
-      title: "Turn a half-plane of a whole scene",
-      prose: () => [
-        "Drag $theta$ on the curve: the windows of all views are warped by it. Show the other side of the line, too; at the border of a roof it agrees at no angle.",
-      ],
-      figure: realFigure("theta-sweep"),
-      isReal: true,
-    },
+    onScene("own", "Turn a half-plane of a whole scene", realFigure("theta-sweep"), [
+      "Drag $theta$ on the curve: the windows of all views are warped by it. Show the other side of the line, too; at the border of a roof it agrees at no angle.",
+    ]),
   ],
 };

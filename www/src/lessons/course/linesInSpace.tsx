@@ -1,11 +1,10 @@
 /** Lesson 6: a line in space has four numbers, and its ends are not among them. */
 import { signal } from "@preact/signals";
-import { Choice } from "../../app/parts/Choice";
 import { counted } from "../../app/parts/counted";
-import { clamp, DEGREE, mix3, rectangle, replaced } from "../../shared/linear";
+import { clamp, DEGREE, lineThrough, mix3, rectangle, replaced, times, transpose } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
-import { Bar, Curve, Dot, Handle, Line, Plot, Shape, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
+import { Bar, Curve, Dot, Handle, Line, Plot, Shape, Slider, Switch } from "../parts/draw";
+import { type Lesson, onScene } from "../parts/lesson";
 import { degrees, metres, num, pixels } from "../parts/say";
 import { ImagePane, OBSERVER, PlaneOfLine, Space, seen } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
@@ -185,7 +184,8 @@ function FitFigure({ isRevealed }: { isRevealed: boolean }) {
   );
 }
 
-type Strips = "one" | "two";
+const STRIPS = { one: "One strip", two: "A view from the next strip" } as const;
+type Strips = keyof typeof STRIPS;
 const strips = signal<Strips>("one");
 const azimuth = signal(45 * DEGREE);
 const ONE_STRIP = [aerial([-9, 0, 42]), aerial([0, 0, 42]), aerial([9, 0, 42])];
@@ -200,24 +200,13 @@ function heightSigma(cameras: readonly Camera[], phi: number): number {
     [c, s, 8 + h + tilt],
   ];
   const step = 0.01;
-  let [hh, ht, tt] = [0, 0, 0];
-  for (const camera of cameras) {
-    const own = inView(camera, at(0, 0));
-    const [dx, dy] = [own[1][0] - own[0][0], own[1][1] - own[0][1]];
-    const length = Math.hypot(dx, dy);
+  const slopes = cameras.flatMap((camera) => {
+    const [a, b, c] = lineThrough(...inView(camera, at(0, 0)));
     const away = (moved: Ends3) =>
-      inView(camera, moved).map(([x, y], i) => {
-        const [u, v] = own[i as 0 | 1];
-        return (dx * (y - v) - dy * (x - u)) / length / step;
-      });
-    const [byHeight, byTilt] = [away(at(step, 0)), away(at(0, step))];
-    byHeight.forEach((h, i) => {
-      const t = byTilt[i] as number;
-      hh += h * h;
-      ht += h * t;
-      tt += t * t;
-    });
-  }
+      inView(camera, moved).map(([x, y]) => (a * x + b * y + c) / Math.hypot(a, b) / step);
+    return transpose([away(at(step, 0)), away(at(0, step))]);
+  });
+  const [[hh = 0, ht = 0] = [], [, tt = 0] = []] = times(transpose(slopes), slopes);
   return SIGMA * Math.sqrt(tt / (hh * tt - ht * ht));
 }
 const camerasOf = (of: Strips) => (of === "one" ? ONE_STRIP : TWO_STRIPS);
@@ -231,19 +220,10 @@ function AzimuthFigure() {
       .filter(([, value]) => value < most);
   return (
     <>
-      <Choice
-        legend="Strips"
-        choices={[
-          ["one", "One strip"],
-          ["two", "A view from the next strip"],
-        ]}
-        of={strips}
-      />
+      <Switch legend="Strips" names={STRIPS} of={strips} />
       <Plot
-        x={{ min: 0, max: 90 }}
-        y={{ min: 0, max: most }}
-        xTitle="angle between edge and flight, degrees"
-        yTitle="σ of the height, m"
+        x={[0, 90, "angle between edge and flight, degrees"]}
+        y={[0, most, "σ of the height, m"]}
         label="Standard deviation of the height of an edge against its direction"
       >
         {({ at, under }) => (
@@ -293,10 +273,8 @@ function GrowFigure() {
   return (
     <>
       <Plot
-        x={{ min: 0, max: 10 }}
-        y={{ min: 0, max: 4 }}
-        xTitle="along the edge, m"
-        yTitle="views (colours), line (top)"
+        x={[0, 10, "along the edge, m"]}
+        y={[0, 4, "views (colours), line (top)"]}
         label="Fragments of an edge in three views and the line that they make"
         height={230}
       >
@@ -326,12 +304,7 @@ function GrowFigure() {
           </>
         )}
       </Plot>
-      <Slider
-        label="views that must show a place"
-        of={needed}
-        range={[1, 3, 1]}
-        says={num(needed.value, 0)}
-      />
+      <Slider label="views that must show a place" of={needed} range={[1, 3, 1]} />
     </>
   );
 }
@@ -425,14 +398,8 @@ export const LINES_IN_SPACE: Lesson = {
       says: () =>
         `What at least ${counted(needed.value, "views")} show${needed.value === 1 ? "s" : ""} is ${metres(grownLength(needed.value))} of the 10 m; the longest single segment has 7 m.`,
     },
-    {
-      id: "own",
-      title: "Lines of a whole scene",
-      prose: () => [
-        "Each line with its standard deviation against the number of views, and the picked line in every view. The more views, the better: figure 9 of B99.",
-      ],
-      figure: realFigure("line-accuracy"),
-      isReal: true,
-    },
+    onScene("own", "Lines of a whole scene", realFigure("line-accuracy"), [
+      "Each line with its standard deviation against the number of views, and the picked line in every view. The more views, the better: figure 9 of B99.",
+    ]),
   ],
 };

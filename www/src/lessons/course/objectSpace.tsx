@@ -3,8 +3,21 @@ import { computed, signal } from "@preact/signals";
 import { counted } from "../../app/parts/counted";
 import { add, clamp, DEGREE } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Bar, Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Shape, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
+import {
+  Bar,
+  Curve,
+  Dot,
+  Drawing,
+  Grey,
+  Handle,
+  inMetres,
+  Label,
+  Line,
+  Plot,
+  Shape,
+  Slider,
+} from "../parts/draw";
+import { type Lesson, onScene } from "../parts/lesson";
 import { degrees, metres, num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
 import { byCount, describe, shortest } from "../toy/description";
@@ -27,10 +40,8 @@ function CountFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
       <Plot
-        x={{ min: 2, max: 10 }}
-        y={{ min: 0, max: isRevealed ? most : 10 * lineCount.value }}
-        xTitle="views"
-        yTitle="lines touched"
+        x={[2, 10, "views"]}
+        y={[0, isRevealed ? most : 10 * lineCount.value, "lines touched"]}
         label="Work against the number of views"
       >
         {({ at, upright }) => (
@@ -38,20 +49,14 @@ function CountFigure({ isRevealed }: { isRevealed: boolean }) {
             {isRevealed && <Curve points={counts.map((n): Vec2 => at([n, comparisons(n)]))} class="s7" />}
             <Curve points={counts.map((n): Vec2 => at([n, accumulated(n)]))} class="s4" />
             {isRevealed && (
-              <Label at={at([6.6, comparisons(7)])} anchor="end" class="s7">
-                image against image
-              </Label>
+              <Label at={at([6.6, comparisons(7)])} anchor="end" class="s7" text="image against image" />
             )}
-            <Label at={at([10, accumulated(10)])} dy={-8} anchor="end" class="s4">
-              into space
-            </Label>
+            <Label at={at([10, accumulated(10)])} dy={-8} anchor="end" class="s4" text="into space" />
             <Line {...upright(viewCount.value)} class="s5 faint" />
           </>
         )}
       </Plot>
-      {isRevealed && (
-        <Slider symbol="N" label="views" of={viewCount} range={[2, 10, 1]} says={num(viewCount.value, 0)} />
-      )}
+      {isRevealed && <Slider symbol="N" label="views" of={viewCount} range={[2, 10, 1]} />}
     </>
   );
 }
@@ -79,10 +84,8 @@ function DirectionFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
       <Plot
-        x={{ min: 0, max: 180 }}
-        y={{ min: 0, max: most }}
-        xTitle="azimuth, degrees"
-        yTitle="length of lines, px"
+        x={[0, 180, "azimuth, degrees"]}
+        y={[0, most, "length of lines, px"]}
         label="Lengths of all image lines by azimuth"
       >
         {({ at, under, upright }) => (
@@ -111,15 +114,7 @@ function DirectionFigure({ isRevealed }: { isRevealed: boolean }) {
           </>
         )}
       </Plot>
-      {isRevealed && (
-        <Slider
-          symbol="N"
-          label="views in the histogram"
-          of={used}
-          range={[1, 6, 1]}
-          says={num(used.value, 0)}
-        />
-      )}
+      {isRevealed && <Slider symbol="N" label="views in the histogram" of={used} range={[1, 6, 1]} />}
     </>
   );
 }
@@ -163,8 +158,8 @@ function distanceToRay({ view, through }: Ray, [y, z]: Vec2): number {
 }
 const supporters = (at: Vec2) =>
   new Set(RAYS.filter((ray) => distanceToRay(ray, at) < TOLERANCE_M).map(({ view }) => view));
-const CROSS = { width: 480, height: 330, scale: 21, x: 240, y: 285 } as const;
-const inCross = ([y, z]: Vec2): Vec2 => [CROSS.x + CROSS.scale * y, CROSS.y - CROSS.scale * z];
+const CROSS = inMetres(480, 330, 21, [240, 285]);
+const inCross = (at: Vec2): Vec2 => CROSS.at(...at);
 const VIEW_CLASS = ["s1", "s2", "s3", "s4", "s5", "s7"] as const;
 
 /** The parts of a ray between two heights of the drawing. */
@@ -206,10 +201,10 @@ function ClusterFigure({ isRevealed }: { isRevealed: boolean }) {
         says={`${counted(own.size, "views")}, ${metres(probe.value[1])} high`}
         value={own.size}
         of={probe}
-        to={([x, y]): Vec2 => [
-          clamp((x - CROSS.x) / CROSS.scale, -10, 10),
-          clamp((CROSS.y - y) / CROSS.scale, -1, 12),
-        ]}
+        to={(at): Vec2 => {
+          const [y, z] = CROSS.place(at);
+          return [clamp(y, -10, 10), clamp(z, -1, 12)];
+        }}
       />
     </Drawing>
   );
@@ -244,10 +239,8 @@ function DescriptionFigure({ isRevealed }: { isRevealed: boolean }) {
     <>
       <Grey values={ROW} width={PIXELS} height={1} label="A row of 64 pixels" class="row-of-pixels" />
       <Plot
-        x={{ min: 0, max: PIXELS }}
-        y={{ min: 50, max: 220 }}
-        xTitle="pixel"
-        yTitle="grey value"
+        x={[0, PIXELS, "pixel"]}
+        y={[50, 220, "grey value"]}
         label="Grey values of the row and the stretches that describe them"
         height={250}
       >
@@ -300,12 +293,8 @@ function DescriptionFigure({ isRevealed }: { isRevealed: boolean }) {
       <Drawing width={480} height={44} label={`Model ${num(model, 0)} bits, data ${num(data, 0)} bits`}>
         <Bar from={[0, 4]} to={[scale * model, 20]} class="s6" />
         <Bar from={[scale * model, 4]} to={[scale * model + Math.min(480, scale * data), 20]} class="s1" />
-        <Label at={[0, 22]} dy={14} class="s6">
-          model {num(model, 0)}
-        </Label>
-        <Label at={[140, 22]} dy={14} class="s1">
-          deviations {num(data, 0)} bits
-        </Label>
+        <Label at={[0, 22]} dy={14} class="s6" text={`model ${num(model, 0)}`} />
+        <Label at={[140, 22]} dy={14} class="s1" text={`deviations ${num(data, 0)} bits`} />
       </Drawing>
     </>
   );
@@ -336,10 +325,8 @@ function CountBreaksFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
       <Plot
-        x={{ min: 0, max: MOST_BREAKS }}
-        y={{ min: 0, max: most }}
-        xTitle="breaks"
-        yTitle="bits"
+        x={[0, MOST_BREAKS, "breaks"]}
+        y={[0, most, "bits"]}
         label="Bits of model and deviations against the number of breaks"
       >
         {({ at, upright }) => (
@@ -347,26 +334,24 @@ function CountBreaksFigure({ isRevealed }: { isRevealed: boolean }) {
             <Curve points={curve((k) => bitsOf(k).data).map(at)} class="s1" />
             {isRevealed && <Curve points={curve((k) => bitsOf(k).model).map(at)} class="s6" />}
             {isRevealed && <Curve points={curve((k) => bitsOf(k).total).map(at)} class="s0" />}
-            <Label at={at([MOST_BREAKS, bitsOf(MOST_BREAKS).data])} dy={18} anchor="end" class="s1">
-              deviations
-            </Label>
+            <Label
+              at={at([MOST_BREAKS, bitsOf(MOST_BREAKS).data])}
+              dy={18}
+              anchor="end"
+              class="s1"
+              text="deviations"
+            />
             {isRevealed && (
               <>
-                <Label at={at([3, bitsOf(3).model])} dy={18} class="s6">
-                  model
-                </Label>
-                <Label at={at([9, bitsOf(9).total])} dy={-8} anchor="end">
-                  both
-                </Label>
+                <Label at={at([3, bitsOf(3).model])} dy={18} class="s6" text="model" />
+                <Label at={at([9, bitsOf(9).total])} dy={-8} anchor="end" text="both" />
                 <Line {...upright(count.value)} class="s6 faint" />
               </>
             )}
           </>
         )}
       </Plot>
-      {isRevealed && (
-        <Slider symbol="k" label="breaks" of={count} range={[0, MOST_BREAKS, 1]} says={num(count.value, 0)} />
-      )}
+      {isRevealed && <Slider symbol="k" label="breaks" of={count} range={[0, MOST_BREAKS, 1]} />}
     </>
   );
 }
@@ -474,9 +459,7 @@ export const OBJECT_SPACE: Lesson = {
         question:
           "The curve of the deviations only falls. At how many breaks is the *whole* description shortest?",
         unit: "breaks",
-        min: 0,
-        max: MOST_BREAKS,
-        step: 1,
+        range: [0, MOST_BREAKS, 1],
         truth: () => BEST.length,
         within: 0,
         why: () => "Nobody has set a threshold: a break that saves fewer bits than it costs is not made.",
@@ -484,32 +467,14 @@ export const OBJECT_SPACE: Lesson = {
       says: () =>
         `With $k$ = ${count.value} it is ${num(bitsOf(count.value).total, 0)} bits long; the shortest has ${num(Math.min(...Array.from({ length: MOST_BREAKS + 1 }, (_, k) => bitsOf(k).total)), 0)}.`,
     },
-    {
-      id: "own-regions",
-      title: "Regions of a whole photograph",
-      prose: () => [
-        "The partition of a photograph by its description length: regions of constant grey with straight, shared borders. Choose another view.",
-      ],
-      figure: realFigure("regions"),
-      isReal: true,
-    },
-    {
-      id: "own-directions",
-      title: "Main directions of a whole scene",
-      prose: () => [
-        "The histogram of all views of the scene, and the two perpendicular directions that were taken from it.",
-      ],
-      figure: realFigure("main-directions"),
-      isReal: true,
-    },
-    {
-      id: "own",
-      title: "Clusters of a whole scene",
-      prose: () => [
-        "The plane across a main direction, with the rays of all views and the clusters that were kept. Pick one: it is projected back into the photographs.",
-      ],
-      figure: realFigure("clusters"),
-      isReal: true,
-    },
+    onScene("own-regions", "Regions of a whole photograph", realFigure("regions"), [
+      "The partition of a photograph by its description length: regions of constant grey with straight, shared borders. Choose another view.",
+    ]),
+    onScene("own-directions", "Main directions of a whole scene", realFigure("main-directions"), [
+      "The histogram of all views of the scene, and the two perpendicular directions that were taken from it.",
+    ]),
+    onScene("own", "Clusters of a whole scene", realFigure("clusters"), [
+      "The plane across a main direction, with the rays of all views and the clusters that were kept. Pick one: it is projected back into the photographs.",
+    ]),
   ],
 };

@@ -1,10 +1,9 @@
 /** Lesson 1: what a camera does with a point, and why one matrix says it. */
 import { signal } from "@preact/signals";
-import { Choice } from "../../app/parts/Choice";
 import { clamp, nearestParameter, point2 } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
-import { Dot, Drawing, Handle, Label, Line, Shape, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
+import { Dot, Drawing, Handle, Label, Line, Shape, Slider, Switch } from "../parts/draw";
+import { type Lesson, onScene } from "../parts/lesson";
 import { degrees, metres, num, pixels, place } from "../parts/say";
 import { ImagePane, inFrame, OBSERVER, Space, seen } from "../parts/scene";
 import { PixelInViews } from "../scene/PixelInViews";
@@ -34,15 +33,11 @@ function RayFigure({ isRevealed }: { isRevealed: boolean }) {
           to={(to) => nearestParameter((s) => seen(along(s)), 9, FAR, to)}
           isFixed={!isRevealed}
         />
-        <Label at={seen(X)} dx={12} dy={-6} class="s4 vector">
-          X
-        </Label>
+        <Label at={seen(X)} dx={12} dy={-6} class="s4 vector" text="X" />
       </Space>
       <ImagePane camera={FIRST} title="What the camera sees" label="Image of the house" colour={1}>
         <Dot at={imageOf(FIRST, X)} class="s1" />
-        <Label at={imageOf(FIRST, X)} dx={8} dy={-8} class="s1 vector">
-          x
-        </Label>
+        <Label at={imageOf(FIRST, X)} dx={8} dy={-8} class="s1 vector" text="x" />
       </ImagePane>
     </div>
   );
@@ -71,19 +66,17 @@ function TrianglesFigure({ isRevealed }: { isRevealed: boolean }) {
       <Line from={[middle - filmHalf, film]} to={[middle + filmHalf, film]} class="s1 thick" />
       <Line from={[390, top]} to={[390, ground]} class="s5" />
       <Line from={[345, top]} to={[345, film]} class="s5" />
-      <Label at={[345, (top + film) / 2]} dx={-14} dy={4} class="s5 letter">
-        f
-      </Label>
-      <Label at={[390, (top + ground) / 2]} dx={8} class="s5">
-        <tspan class="letter">Z</tspan> = {metres(Z, 0)}
-      </Label>
-      <Label at={[middle, ground]} dy={30} anchor="middle" class="s4">
-        <tspan class="letter">W</tspan>
-        {" = 10 m"}
-      </Label>
-      <Label at={[middle - 76, film]} anchor="end" dy={4} class="s1">
-        <tspan class="letter">ℓ</tspan> {isRevealed ? `= ${pixels(roofPx(Z), 0)}` : ""}
-      </Label>
+      <Label at={[345, (top + film) / 2]} dx={-14} dy={4} class="s5 letter" text="f" />
+      <Label at={[390, (top + ground) / 2]} dx={8} class="s5" letter="Z" text={`= ${metres(Z, 0)}`} />
+      <Label at={[middle, ground]} dy={30} anchor="middle" class="s4" letter="W" text="= 10 m" />
+      <Label
+        at={[middle - 76, film]}
+        anchor="end"
+        dy={4}
+        class="s1"
+        letter="ℓ"
+        text={isRevealed ? `= ${pixels(roofPx(Z), 0)}` : ""}
+      />
       <Handle
         at={[middle, top]}
         class="s5"
@@ -121,15 +114,11 @@ function PixelFigure({ isRevealed }: { isRevealed: boolean }) {
         )}
         {isRevealed &&
           [0, 1, 2, 3, 4, 5, 6].map((i) => (
-            <Label key={i} at={[i * CELL, 0]} dy={-8} anchor="middle" class="tick">
-              {i}
-            </Label>
+            <Label key={i} at={[i * CELL, 0]} dy={-8} anchor="middle" class="tick" text={i} />
           ))}
         {isRevealed &&
           [0, 1, 2, 3, 4].map((i) => (
-            <Label key={i} at={[0, i * CELL]} dx={-8} dy={4} anchor="end" class="tick">
-              {i}
-            </Label>
+            <Label key={i} at={[0, i * CELL]} dx={-8} dy={4} anchor="end" class="tick" text={i} />
           ))}
         <Dot at={[CELL / 2, CELL / 2]} class="s1" />
         {isRevealed && (
@@ -173,13 +162,7 @@ function CalibrationFigure() {
           to={([x, y]): Vec2 => [Math.round(clamp(x, 0, 320)), Math.round(clamp(y, 0, 240))]}
         />
       </ImagePane>
-      <Slider
-        symbol="f"
-        label="principal distance"
-        of={distancePx}
-        range={[200, 900, 10]}
-        says={pixels(f, 0)}
-      />
+      <Slider symbol="f" label="principal distance" of={distancePx} range={[200, 900, 10]} suffix=" px" />
     </>
   );
 }
@@ -210,7 +193,7 @@ function OrientationFigure() {
         label="height"
         value={camera.C[2]}
         range={[26, 48, 1]}
-        says={metres(camera.C[2], 0)}
+        suffix=" m"
         onInput={(value) => {
           centre.value = [centre.value[0], centre.value[1], value];
         }}
@@ -232,21 +215,11 @@ function ProductFigure() {
   const x = imageOf(FIRST, X);
   return (
     <>
-      <Choice
-        legend="Point"
-        choices={[
-          ["ridge", "Ridge"],
-          ["eave", "Eave"],
-          ["foot", "Foot of the wall"],
-        ]}
-        of={picked}
-      />
+      <Switch legend="Point" names={{ ridge: "Ridge", eave: "Eave", foot: "Foot of the wall" }} of={picked} />
       <ImagePane camera={FIRST} title="The point in the image" label="The house and the point" colour={1}>
         <Shape points={[[0, 0], [x[0], 0], x, [0, x[1]]]} class="s1 measure" />
         <Dot at={x} class="s1" />
-        <Label at={x} dx={8} dy={-8} class="s1">
-          {place(x)}
-        </Label>
+        <Label at={x} dx={8} dy={-8} class="s1" text={place(x)} />
       </ImagePane>
     </>
   );
@@ -294,9 +267,7 @@ export const PINHOLE: Lesson = {
         kind: "estimate",
         question: `From ${metres(40, 0)} above it, a roof of $W$ = 10 m is ${pixels(roofPx(40), 0)} long. How long is it from 80 m?`,
         unit: "px",
-        min: 10,
-        max: 240,
-        step: 2,
+        range: [10, 240, 2],
         truth: () => roofPx(80),
         within: 6,
         why: () => "Depth stands below the line: twice the depth, half the length. Drag the camera.",
@@ -378,16 +349,15 @@ export const PINHOLE: Lesson = {
         return `The ${PLACES[picked.value][0]} is seen at ${place(imageOf(FIRST, X))} px, and is ${metres(depthOf(FIRST, X))} before the camera.`;
       },
     },
-    {
-      id: "own",
-      title: "On whole photographs",
-      prose: () => [
+    onScene(
+      "own",
+      "On whole photographs",
+      PixelInViews,
+      [
         "The same on photographs with their own $P$. Pick a point of a roof in the first one, and turn the height $h$ until the mark is on the same point in all others.",
         "One height fits all views at once: you have just measured it, with nothing but projection matrices.",
       ],
-      formula: () => "x2 ~ P2 X",
-      figure: PixelInViews,
-      isReal: true,
-    },
+      "x2 ~ P2 X",
+    ),
   ],
 };

@@ -1,79 +1,68 @@
 /** Lesson 8: how half-planes become the faces of a roof. */
-import { signal } from "@preact/signals";
+import { type Signal, signal } from "@preact/signals";
 import { clamp, DEGREE, planArea, rectangle } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Dot, Drawing, Handle, Label, Line, Shape, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
+import { Dot, Drawing, Handle, inMetres, Label, Line, Shape, Slider } from "../parts/draw";
+import { type Lesson, onScene } from "../parts/lesson";
 import { degrees, metres, num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
 import { facetOf, heightOf, PLAN, ridgeOf, SIDES, type SideName } from "../toy/roofs";
 
 const south = signal(30 * DEGREE);
 const north = signal(45 * DEGREE);
-const CUT = { width: 480, height: 300, scale: 34, x: 104, y: 210 } as const;
-const inCut = (across: number, z: number): Vec2 => [
-  CUT.x + CUT.scale * across,
-  CUT.y - CUT.scale * (z - PLAN.eave),
-];
+const CUT = inMetres(480, 300, 34, [104, 210]);
+const inCut = (across: number, z: number): Vec2 => CUT.at(across, z - PLAN.eave);
 const ACROSS = 2 * PLAN.width;
 const ARM_M = 7;
 
 function RidgeFigure({ isRevealed }: { isRevealed: boolean }) {
   const { inwards: at, z } = ridgeOf(south.value, north.value);
-  const arm = (foot: number, angle: number, sign: 1 | -1): Vec2 =>
-    inCut(foot + sign * ARM_M * Math.cos(angle), PLAN.eave + ARM_M * Math.sin(angle));
-  const [ends, endn] = [arm(0, south.value, 1), arm(ACROSS, north.value, -1)];
-  const [feet, footn] = [inCut(0, PLAN.eave), inCut(ACROSS, PLAN.eave)];
+  const ridge = isRevealed ? inCut(at, z) : null;
   return (
     <Drawing width={CUT.width} height={CUT.height} label="Two half-planes from their eaves, cut across">
-      <Line from={feet} to={inCut(0, 3)} class="rule" />
-      <Line from={footn} to={inCut(ACROSS, 3)} class="rule" />
-      {isRevealed ? (
-        <>
-          <Line from={feet} to={ends} class="s6 dashed" />
-          <Line from={footn} to={endn} class="s6 dashed" />
-          <Line from={feet} to={inCut(at, z)} class="s4 thick" />
-          <Line from={footn} to={inCut(at, z)} class="s4 thick" />
-          <Dot at={inCut(at, z)} class="s4" />
-          <Label at={inCut(at, z)} dy={-12} anchor="middle" class="s4">
-            {metres(z)}
-          </Label>
-          <Handle
-            at={ends}
-            class="s6"
-            label="Slope of the south half-plane"
-            says={degrees(south.value)}
-            value={south.value / DEGREE}
-            of={south}
-            to={([x, y]) => clamp(Math.atan2(feet[1] - y, x - feet[0]), 8 * DEGREE, 70 * DEGREE)}
-          />
-          <Handle
-            at={endn}
-            class="s6"
-            label="Slope of the north half-plane"
-            says={degrees(north.value)}
-            value={north.value / DEGREE}
-            of={north}
-            to={([x, y]) => clamp(Math.atan2(footn[1] - y, footn[0] - x), 8 * DEGREE, 70 * DEGREE)}
-          />
-        </>
+      <Eave side="south" of={south} ridge={ridge} />
+      <Eave side="north" of={north} ridge={ridge} />
+      {ridge !== null && <Dot at={ridge} class="s4" />}
+      {ridge !== null && <Label at={ridge} dy={-12} anchor="middle" class="s4" text={metres(z)} />}
+    </Drawing>
+  );
+}
+
+/** A wall with its half-plane: a stump of it, or all of it where the ridge is known. */
+function Eave({ side, of, ridge }: { side: "south" | "north"; of: Signal<number>; ridge: Vec2 | null }) {
+  const [across, sign] = side === "south" ? [0, 1] : [ACROSS, -1];
+  const foot = inCut(across, PLAN.eave);
+  const along = (m: number) =>
+    inCut(across + sign * m * Math.cos(of.value), PLAN.eave + m * Math.sin(of.value));
+  return (
+    <>
+      <Line from={foot} to={inCut(across, 3)} class="rule" />
+      {ridge === null ? (
+        <Line from={foot} to={along(1.6 / Math.cos(of.value))} class="s6 thick" />
       ) : (
         <>
-          <Line from={feet} to={inCut(1.6, PLAN.eave + 1.6 * Math.tan(south.value))} class="s6 thick" />
-          <Line
-            from={footn}
-            to={inCut(ACROSS - 1.6, PLAN.eave + 1.6 * Math.tan(north.value))}
-            class="s6 thick"
+          <Line from={foot} to={along(ARM_M)} class="s6 dashed" />
+          <Line from={foot} to={ridge} class="s4 thick" />
+          <Handle
+            at={along(ARM_M)}
+            class="s6"
+            label={`Slope of the ${side} half-plane`}
+            says={degrees(of.value)}
+            value={of.value / DEGREE}
+            of={of}
+            to={([x, y]) => clamp(Math.atan2(foot[1] - y, sign * (x - foot[0])), 8 * DEGREE, 70 * DEGREE)}
           />
         </>
       )}
-      <Label at={feet} dx={-10} dy={-8} anchor="end" class="s6">
-        {degrees(south.value)}
-      </Label>
-      <Label at={footn} dx={10} dy={-8} class="s6">
-        {degrees(north.value)}
-      </Label>
-    </Drawing>
+      <Label
+        at={foot}
+        dx={-10 * sign}
+        dy={-8}
+        anchor={side === "south" ? "end" : "start"}
+        class="s6"
+        text={degrees(of.value)}
+      />
+    </>
   );
 }
 
@@ -83,11 +72,8 @@ const slopes = signal<Record<SideName, number | null>>({
   north: 35 * DEGREE,
   west: 50 * DEGREE,
 });
-const VIEW = { width: 480, height: 300, scale: 24 } as const;
-const inPlan = ([x, y]: readonly [number, number]): Vec2 => [
-  VIEW.width / 2 + VIEW.scale * x,
-  VIEW.height / 2 - VIEW.scale * y,
-];
+const VIEW = inMetres(480, 300, 24, [240, 150]);
+const inPlan = ([x, y]: readonly [number, number]): Vec2 => VIEW.at(x, y);
 const slopeText = (side: SideName) => {
   const own = slopes.value[side];
   return own === null ? "no half-plane" : degrees(own);
@@ -133,9 +119,14 @@ function EnvelopeFigure({ isRevealed }: { isRevealed: boolean }) {
             ["west", [-PLAN.length, 0], -8, 4, "end"],
           ] as const
         ).map(([side, at, dx, dy, anchor]) => (
-          <Label key={side} at={inPlan(at)} dx={dx} dy={dy} anchor={anchor}>
-            {slopes.value[side] === null ? "–" : degrees(slopes.value[side] ?? 0)}
-          </Label>
+          <Label
+            key={side}
+            at={inPlan(at)}
+            dx={dx}
+            dy={dy}
+            anchor={anchor}
+            text={slopes.value[side] === null ? "–" : degrees(slopes.value[side] ?? 0)}
+          />
         ))}
       </Drawing>
       {isRevealed && (
@@ -189,12 +180,8 @@ function GroupFigure() {
         of={lift}
         to={([, y]) => clamp((at(3.2)[1] - y) / CUT.scale, -1.5, 1.5)}
       />
-      <Label at={at(0)} dx={-10} dy={18} anchor="end" class="s1">
-        eave
-      </Label>
-      <Label at={at(2.4, lift.value)} dx={-10} dy={-8} anchor="end" class="s2">
-        another line
-      </Label>
+      <Label at={at(0)} dx={-10} dy={18} anchor="end" class="s1" text="eave" />
+      <Label at={at(2.4, lift.value)} dx={-10} dy={-8} anchor="end" class="s2" text="another line" />
     </Drawing>
   );
 }
@@ -224,12 +211,13 @@ function ConflictFigure({ isRevealed }: { isRevealed: boolean }) {
           points={box(from, reach.value)}
           class={`outline s7 ${isRevealed && !isBridge ? "gone" : ""}`}
         />
-        <Label at={[x0 + 10, y0]} dy={-8} class="s4">
-          a face
-        </Label>
-        <Label at={[x0 + scale * (from + 2.2), y0 + scale * 5]} dy={20} class="s7">
-          a bridge to the next house
-        </Label>
+        <Label at={[x0 + 10, y0]} dy={-8} class="s4" text="a face" />
+        <Label
+          at={[x0 + scale * (from + 2.2), y0 + scale * 5]}
+          dy={20}
+          class="s7"
+          text="a bridge to the next house"
+        />
         {isRevealed && (
           <Handle
             at={end}
@@ -243,15 +231,7 @@ function ConflictFigure({ isRevealed }: { isRevealed: boolean }) {
           />
         )}
       </Drawing>
-      {isRevealed && (
-        <Slider
-          symbol="tau"
-          label="of the bridge"
-          of={real}
-          range={[0.05, 1, 0.05]}
-          says={num(real.value, 2)}
-        />
-      )}
+      {isRevealed && <Slider symbol="tau" label="of the bridge" of={real} range={[0.05, 1, 0.05]} />}
     </>
   );
 }
@@ -275,9 +255,7 @@ export const ROOFS: Lesson = {
         kind: "estimate",
         question: "The eaves are 5 m high and 8 m apart, the slopes 30° and 45°. How high is the ridge?",
         unit: "m",
-        min: 5,
-        max: 12,
-        step: 0.1,
+        range: [5, 12, 0.1],
         truth: () => ridgeOf(30 * DEGREE, 45 * DEGREE).z,
         within: 0.4,
         why: () => "The steeper side is shorter: the ridge is not in the middle. Drag the half-planes.",
@@ -340,23 +318,11 @@ export const ROOFS: Lesson = {
       says: () =>
         `Face: $S$ = ${num(scoreTrue)} m². Bridge: ${num(bridgeArea(), 0)} m² · ${num(real.value, 2)} = ${num(scoreBridge())} m². ${scoreBridge() > scoreTrue ? "The bridge stays, and it is false." : "The face stays."}`,
     },
-    {
-      id: "own-groups",
-      title: "Groups of a whole scene",
-      prose: () => [
-        "Each group is a plane with its lines and half-planes. Pick one: its members light up, and so do the facets that it became.",
-      ],
-      figure: realFigure("groups"),
-      isReal: true,
-    },
-    {
-      id: "own",
-      title: "Borders and facets of a whole scene",
-      prose: () => [
-        "Border lines by their kind, closed outlines, and what was rejected and why. ridgeline decides by one sum over all cells of the plan which plane covers what, instead of pair by pair.",
-      ],
-      figure: realFigure("facet-plan"),
-      isReal: true,
-    },
+    onScene("own-groups", "Groups of a whole scene", realFigure("groups"), [
+      "Each group is a plane with its lines and half-planes. Pick one: its members light up, and so do the facets that it became.",
+    ]),
+    onScene("own", "Borders and facets of a whole scene", realFigure("facet-plan"), [
+      "Border lines by their kind, closed outlines, and what was rejected and why. ridgeline decides by one sum over all cells of the plan which plane covers what, instead of pair by pair.",
+    ]),
   ],
 };

@@ -4,8 +4,8 @@ import type { ComponentChildren } from "preact";
 import { counted } from "../../app/parts/counted";
 import { clamp, ellipseOf, type Mat, norm, sub } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
-import { Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
+import { Curve, Dot, Drawing, Handle, inMetres, Label, Line, Plot, Slider } from "../parts/draw";
+import { type Lesson, onScene } from "../parts/lesson";
 import { metres, num, pixels } from "../parts/say";
 import { ImagePane, Space, seen } from "../parts/scene";
 import { PixelAccuracy } from "../scene/PixelInViews";
@@ -62,9 +62,7 @@ function SkewFigure() {
         <Line from={seen(b[0])} to={seen(b[1])} class="s2" />
         <Line from={seen(p)} to={seen(q)} class="s7 thick" />
         <Dot at={seen(X)} class="s4" />
-        <Label at={seen(X)} dx={10} dy={-6} class="s4 vector">
-          X
-        </Label>
+        <Label at={seen(X)} dx={10} dy={-6} class="s4 vector" text="X" />
       </Space>
       {mark(FIRST, x, 1)}
       {mark(SECOND, x2, 2)}
@@ -86,11 +84,9 @@ const sigmasOf = (cameras: readonly Camera[], sigma = SIGMA): { x: number; z: nu
 };
 const sigmaZ = (B: number) => sigmasOf(strip(B, 2)).z;
 
-const SIDE = { width: 480, height: 330, ground: 250, scale: 5.4 } as const;
-const inSide = (x: number, z: number): Vec2 => [
-  SIDE.width / 2 + SIDE.scale * x,
-  SIDE.ground - SIDE.scale * z,
-];
+const GROUND_PX = 250;
+const SIDE = inMetres(480, 330, 5.4, [240, GROUND_PX]);
+const inSide = SIDE.at;
 
 /** The plane through the baseline, from the side: cameras, rays and the ellipse of the point, enlarged. */
 function FromSide(props: {
@@ -132,12 +128,21 @@ function BaselineFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <FromSide cameras={strip(B, 2)} sigma={SIGMA} label="Two cameras and the ellipse of the point">
       <Line from={inSide(-B / 2, FLYING_M)} to={at} class="s5" />
-      <Label at={inSide(0, FLYING_M)} dy={-8} anchor="middle" class="s5">
-        <tspan class="letter">B</tspan> = {metres(B, 0)}
-      </Label>
-      <Label at={[SIDE.width - 6, SIDE.ground]} dy={30} anchor="end" class="s7">
-        σ of the height: {metres(sigmaZ(B), 3)}
-      </Label>
+      <Label
+        at={inSide(0, FLYING_M)}
+        dy={-8}
+        anchor="middle"
+        class="s5"
+        letter="B"
+        text={`= ${metres(B, 0)}`}
+      />
+      <Label
+        at={[SIDE.width - 6, GROUND_PX]}
+        dy={30}
+        anchor="end"
+        class="s7"
+        text={`σ of the height: ${metres(sigmaZ(B), 3)}`}
+      />
       {isRevealed && (
         <Handle
           at={at}
@@ -146,7 +151,7 @@ function BaselineFigure({ isRevealed }: { isRevealed: boolean }) {
           says={`baseline ${metres(B, 0)}`}
           step={SIDE.scale / 2}
           of={baseline}
-          to={([x]) => clamp(Math.round((2 * (x - SIDE.width / 2)) / SIDE.scale), 3, 70)}
+          to={(at) => clamp(Math.round(2 * SIDE.place(at)[0]), 3, 70)}
         />
       )}
     </FromSide>
@@ -158,7 +163,6 @@ const ruleOf = (B: number) => ((FLYING_M ** 2 * Math.SQRT2) / (FIRST.f * B)) * S
 
 function RuleFigure() {
   const B = baseline.value;
-  const range = { min: 3, max: 70 };
   const baselines = Array.from({ length: 68 }, (_, i) => 3 + i);
   const curve = (sigmaOf: (b: number) => number) =>
     baselines.map((b): Vec2 => [b, sigmaOf(b)]).filter(([, value]) => value < most);
@@ -166,10 +170,8 @@ function RuleFigure() {
   return (
     <>
       <Plot
-        x={range}
-        y={{ min: 0, max: most }}
-        xTitle="baseline, m"
-        yTitle="σ of the height, m"
+        x={[3, 70, "baseline, m"]}
+        y={[0, most, "σ of the height, m"]}
         label="Standard deviation of the height against the baseline"
       >
         {({ at, under, upright }) => (
@@ -186,16 +188,12 @@ function RuleFigure() {
               of={baseline}
               to={(place) => Math.round(clamp(under(place), 3, 70))}
             />
-            <Label at={at([70, 0.3])} anchor="end" class="s5">
-              - - rule
-            </Label>
-            <Label at={at([70, 0.255])} anchor="end" class="s7">
-              — computed
-            </Label>
+            <Label at={at([70, 0.3])} anchor="end" class="s5" text="- - rule" />
+            <Label at={at([70, 0.255])} anchor="end" class="s7" text="— computed" />
           </>
         )}
       </Plot>
-      <Slider symbol="B" label="baseline" of={baseline} range={[3, 70, 1]} says={metres(B, 0)} />
+      <Slider symbol="B" label="baseline" of={baseline} range={[3, 70, 1]} suffix=" m" />
     </>
   );
 }
@@ -212,15 +210,7 @@ function ViewsFigure({ isRevealed }: { isRevealed: boolean }) {
         sigma={SIGMA}
         label="Several cameras over one baseline"
       />
-      {isRevealed && (
-        <Slider
-          symbol="N"
-          label="views over the same 40 m"
-          of={views}
-          range={[2, 8, 1]}
-          says={num(views.value, 0)}
-        />
-      )}
+      {isRevealed && <Slider symbol="N" label="views over the same 40 m" of={views} range={[2, 8, 1]} />}
     </>
   );
 }
@@ -234,14 +224,8 @@ function CovarianceFigure() {
         sigma={sigma.value}
         label="The ellipse by the accuracy of the image points"
       />
-      <Slider
-        symbol="sigma"
-        label="of the image points"
-        of={sigma}
-        range={[0.1, 1.5, 0.05]}
-        says={pixels(sigma.value, 2)}
-      />
-      <Slider symbol="B" label="baseline" of={baseline} range={[3, 70, 1]} says={metres(baseline.value, 0)} />
+      <Slider symbol="sigma" label="of the image points" of={sigma} range={[0.1, 1.5, 0.05]} suffix=" px" />
+      <Slider symbol="B" label="baseline" of={baseline} range={[3, 70, 1]} suffix=" m" />
     </>
   );
 }
@@ -279,9 +263,7 @@ export const TRIANGULATION: Lesson = {
         kind: "estimate",
         question: `With $B$ = 20 m the height is good to ${metres(sigmaZ(20), 3)}. And with 10 m?`,
         unit: "m",
-        min: 0.02,
-        max: 0.4,
-        step: 0.005,
+        range: [0.02, 0.4, 0.005],
         truth: () => sigmaZ(10),
         within: 0.02,
         why: () => "Half the baseline, twice the error. Now drag the camera.",
@@ -336,15 +318,14 @@ export const TRIANGULATION: Lesson = {
       says: () =>
         `${counted(views.value, "views")}: ${metres(ofViews(views.value), 3)}, that is ${num(100 * (1 - ofViews(views.value) / ofViews(2)), 0)} % less than with two.`,
     },
-    {
-      id: "own",
-      title: "How accurate is your scene?",
-      prose: () => [
+    onScene(
+      "own",
+      "How accurate is your scene?",
+      PixelAccuracy,
+      [
         "The same formula with the cameras of whole photographs: pick a point and its height as in lesson 1. What it says holds before anything is matched.",
       ],
-      formula: () => "sigmaX = sigma ^2 ( sum _ i J _ i ^T J _ i ) ^ -1",
-      figure: PixelAccuracy,
-      isReal: true,
-    },
+      "sigmaX = sigma ^2 ( sum _ i J _ i ^T J _ i ) ^ -1",
+    ),
   ],
 };

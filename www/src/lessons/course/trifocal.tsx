@@ -1,10 +1,9 @@
 /** Lesson 4: two views never contradict each other about a line; the third one can. */
 import { signal } from "@preact/signals";
-import { Choice } from "../../app/parts/Choice";
 import { clamp, DEGREE, lineDistance, lineThrough, replaced } from "../../shared/linear";
 import type { Vec3 } from "../../shared/records";
-import { Dot, Handle, Label, Line, Slider } from "../parts/draw";
-import type { Lesson } from "../parts/lesson";
+import { Dot, Handle, Label, Line, Slider, Switch } from "../parts/draw";
+import { type Lesson, onScene } from "../parts/lesson";
 import { degrees, metres, pixels, place } from "../parts/say";
 import { ImageLine, ImagePane, PlaneOfLine, Space, seen } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
@@ -59,9 +58,7 @@ function TwoPlanesFigure({ isRevealed }: { isRevealed: boolean }) {
         <PlaneOfLine camera={FIRST} ends={IN_FIRST} class="s1 area" down={4} />
         <PlaneOfLine camera={SECOND} ends={inSecond()} class="s2 area" down={4} />
         <Line from={seen(L[0])} to={seen(L[1])} class="s4 thick" />
-        <Label at={seen(L[1])} dx={8} dy={-4} class="s4 letter">
-          L
-        </Label>
+        <Label at={seen(L[1])} dx={8} dy={-4} class="s4 letter" text="L" />
       </Space>
       <ImagePane camera={SECOND} title="The line l′ of the second view" colour={2}>
         <Line from={inSecond()[0]} to={inSecond()[1]} class="s2 thick" />
@@ -154,17 +151,7 @@ const decoyHeight = (of: Decoy) =>
 function DecoyFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
-      {isRevealed && (
-        <Choice
-          legend="Candidate"
-          choices={[
-            ["A", "A"],
-            ["B", "B"],
-            ["C", "C"],
-          ]}
-          of={decoy}
-        />
-      )}
+      {isRevealed && <Switch legend="Candidate" names={{ A: "A", B: "B", C: "C" }} of={decoy} />}
       <div class="pair three">
         <ImagePane camera={FIRST} title="First view: the line l" colour={1}>
           <Line from={IN_FIRST[0]} to={IN_FIRST[1]} class="s1 thick" />
@@ -176,9 +163,7 @@ function DecoyFigure({ isRevealed }: { isRevealed: boolean }) {
             return (
               <g key={name}>
                 <Line from={p} to={q} class={`s2 ${isShown ? "thick" : "faint"}`} />
-                <Label at={q} dx={8} dy={5} class="s2">
-                  {name}
-                </Label>
+                <Label at={q} dx={8} dy={5} class="s2" text={name} />
               </g>
             );
           })}
@@ -237,7 +222,7 @@ function DegenerateFigure() {
         of={azimuth}
         unit={DEGREE}
         range={[1, 90, 1]}
-        says={degrees(azimuth.value)}
+        suffix="°"
       />
     </>
   );
@@ -342,14 +327,8 @@ export const TRIFOCAL: Lesson = {
       says: () =>
         `At $phi$ = ${degrees(azimuth.value)} half a pixel becomes ${pixels(spread())} in the third view. ${spread() > 3 ? "Such a line needs a pair of views across the flight." : "That is a good prediction."}`,
     },
-    {
-      id: "own",
-      title: "Transfer in a whole scene",
-      prose: () => [
-        "The segment, the candidate that it is compared with, and the line that both predict in a third view. Pick other candidates: false ones predict nothing.",
-      ],
-      figure: realFigure("point-transfer"),
-      isReal: true,
-    },
+    onScene("own", "Transfer in a whole scene", realFigure("point-transfer"), [
+      "The segment, the candidate that it is compared with, and the line that both predict in a third view. Pick other candidates: false ones predict nothing.",
+    ]),
   ],
 };

@@ -2,11 +2,13 @@
 import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useId } from "preact/hooks";
-import { axesOf, type Frame, pathOf, place, type Scale, ticks } from "../../app/parts/charts";
+import { Choice } from "../../app/parts/Choice";
+import { axesOf, type Frame, pathOf, place as placeOn, ticks } from "../../app/parts/charts";
 import { ARROWS, useDrawn, useSize } from "../../app/parts/useDrawn";
-import { add } from "../../shared/linear";
+import { add, clamp } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
 import { Formula } from "./Formula";
+import { digitsOf, num, place } from "./say";
 
 interface DrawingProps {
   width: number;
@@ -48,16 +50,29 @@ export function Drawing({
   );
 }
 
+/** A drawing in metres, upwards from a place of it: its size, where a place is drawn, and which place that is. */
+export function inMetres(width: number, height: number, scale: number, [x0, y0]: Vec2) {
+  return {
+    width,
+    height,
+    scale,
+    at: (x: number, y: number): Vec2 => [x0 + scale * x, y0 - scale * y],
+    place: ([px, py]: Vec2): Vec2 => [(px - x0) / scale, (y0 - py) / scale],
+  };
+}
+
 /** Text in a drawing, with an edge of paper so that lines do not cross it; `dx` and `dy` in CSS pixels. */
 export function Label(props: {
   at: Vec2;
-  children: ComponentChildren;
+  text: string | number;
+  /** A symbol that stands before the text. */
+  letter?: string;
   class?: string;
   dx?: number;
   dy?: number;
   anchor?: "start" | "middle" | "end";
 }) {
-  const { at, children, class: name = "", dx = 0, dy = 0, anchor = "start" } = props;
+  const { at, text, letter, class: name = "", dx = 0, dy = 0, anchor = "start" } = props;
   return (
     <g transform={`translate(${at[0].toFixed(2)} ${at[1].toFixed(2)})`}>
       <text
@@ -65,7 +80,8 @@ export function Label(props: {
         text-anchor={anchor}
         style={{ transform: `translate(calc(var(--u, 1) * ${dx}px), calc(var(--u, 1) * ${dy}px))` }}
       >
-        {children}
+        {letter !== undefined && <tspan class="letter">{letter} </tspan>}
+        {text}
       </text>
     </g>
   );
@@ -166,13 +182,45 @@ export function Handle<T>(props: HandleProps<T>) {
   );
 }
 
+/** A place of an image that is dragged about, within the image less a margin. */
+export function PointHandle(props: {
+  of: Signal<Vec2>;
+  size: { width: number; height: number };
+  margin?: number;
+  label: string;
+  class: string;
+  says?: string;
+  step?: number;
+  isFixed?: boolean;
+}) {
+  const { size, margin = 0, ...of } = props;
+  const at = of.of.value;
+  const to = ([x, y]: Vec2): Vec2 => [
+    clamp(x, margin, size.width - margin),
+    clamp(y, margin, size.height - margin),
+  ];
+  return <Handle at={at} says={place(at, 0)} to={to} {...of} />;
+}
+
+/** One of a few, each by what is written on its button. */
+export function Switch<T extends string>(props: {
+  legend: string;
+  names: Readonly<Record<T, string>>;
+  of: Signal<T>;
+}) {
+  const { legend, names, of } = props;
+  return <Choice legend={legend} choices={Object.entries(names) as [T, string][]} of={of} />;
+}
+
 type SliderProps = {
   /** The symbol that it moves. */
   symbol?: string;
   label: string;
   range: readonly [min: number, max: number, step: number];
-  /** The value in words, with its unit. */
-  says: string;
+  /** The value in words, where a number alone does not say it. */
+  says?: string;
+  /** What stands behind the number: " m". */
+  suffix?: string;
   disabled?: boolean;
 } & (
   | {
@@ -187,12 +235,14 @@ export function Slider({
   symbol,
   label,
   range: [min, max, step],
-  says,
+  suffix = "",
   disabled = false,
   ...moved
 }: SliderProps) {
   const id = useId();
   const unit = "of" in moved ? (moved.unit ?? 1) : 1;
+  const value = "of" in moved ? moved.of.value / unit : moved.value;
+  const says = moved.says ?? `${num(value, digitsOf(step))}${suffix}`;
   return (
     <div class="slider">
       <label for={id}>
@@ -208,14 +258,14 @@ export function Slider({
         max={max}
         step={step}
         disabled={disabled}
-        value={"of" in moved ? moved.of.value / unit : moved.value}
+        value={value}
         aria-valuetext={says}
         onInput={(event) => {
-          const value = Number(event.currentTarget.value);
+          const next = Number(event.currentTarget.value);
           if ("of" in moved) {
-            moved.of.value = value * unit;
+            moved.of.value = next * unit;
           } else {
-            moved.onInput(value);
+            moved.onInput(next);
           }
         }}
       />
@@ -223,11 +273,11 @@ export function Slider({
   );
 }
 
+type Axis = readonly [min: number, max: number, title: string];
+
 interface PlotProps {
-  x: Scale;
-  y: Scale;
-  xTitle: string;
-  yTitle: string;
+  x: Axis;
+  y: Axis;
   label: string;
   height?: number;
   children: (places: Places) => ComponentChildren;
@@ -247,7 +297,12 @@ interface Places {
 const PLOT_WIDTH = 480;
 
 /** Axes about what is drawn inside. */
-export function Plot({ x, y, xTitle, yTitle, label, height = 270, children }: PlotProps) {
+export function Plot({ x: [xMin, xMax, xTitle], y: [yMin, yMax, yTitle], ...of }: PlotProps) {
+  const { label, height = 270, children } = of;
+  const [x, y] = [
+    { min: xMin, max: xMax },
+    { min: yMin, max: yMax },
+  ];
   const frame: Frame = { width: PLOT_WIDTH, height, left: 46, right: 12, top: 24, bottom: 54 };
   const [toX, toY] = axesOf(frame, x, y);
   const [right, bottom] = [frame.width - frame.right, frame.height - frame.bottom];
@@ -258,7 +313,7 @@ export function Plot({ x, y, xTitle, yTitle, label, height = 270, children }: Pl
   const level: Places["level"] = (value) => ({ from: [frame.left, toY(value)], to: [right, toY(value)] });
   const places: Places = {
     at: ([across, up]) => [toX(across), toY(up)],
-    under: ([px]) => place(px, { min: frame.left, max: right }, x.min, x.max),
+    under: ([px]) => placeOn(px, { min: frame.left, max: right }, x.min, x.max),
     upright,
     level,
     frame,
@@ -268,25 +323,17 @@ export function Plot({ x, y, xTitle, yTitle, label, height = 270, children }: Pl
       {ticks(y, 4).map((value) => (
         <g key={`y${value}`}>
           <Line {...level(value)} class="grid" />
-          <Label at={[frame.left, toY(value)]} dx={-5} dy={4} anchor="end" class="tick">
-            {tick(value)}
-          </Label>
+          <Label at={[frame.left, toY(value)]} dx={-5} dy={4} anchor="end" class="tick" text={tick(value)} />
         </g>
       ))}
       {ticks(x, 5).map((value) => (
         <g key={`x${value}`}>
           <Line {...upright(value)} class="grid" />
-          <Label at={[toX(value), bottom]} dy={15} anchor="middle" class="tick">
-            {tick(value)}
-          </Label>
+          <Label at={[toX(value), bottom]} dy={15} anchor="middle" class="tick" text={tick(value)} />
         </g>
       ))}
-      <Label at={[right, bottom]} dy={33} anchor="end" class="tick">
-        {xTitle}
-      </Label>
-      <Label at={[4, frame.top]} dy={-9} class="tick">
-        {yTitle}
-      </Label>
+      <Label at={[right, bottom]} dy={33} anchor="end" class="tick" text={xTitle} />
+      <Label at={[4, frame.top]} dy={-9} class="tick" text={yTitle} />
       {children(places)}
     </Drawing>
   );

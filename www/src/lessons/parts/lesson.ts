@@ -35,9 +35,7 @@ export type Prediction =
       kind: "estimate";
       question: string;
       unit: string;
-      min: number;
-      max: number;
-      step: number;
+      range: readonly [min: number, max: number, step: number];
       truth: () => number;
       /** Off by no more than this is right. */
       within: number;
@@ -45,6 +43,18 @@ export type Prediction =
     }
   /** The reader places something in the figure itself. */
   | { kind: "place"; question: string; how: () => string };
+
+/** A screen that is shown on the reader's project, or on the demo. */
+export function onScene(
+  id: string,
+  title: string,
+  figure: Screen["figure"],
+  prose: readonly string[],
+  formula?: string,
+): Screen {
+  const written = formula === undefined ? {} : { formula: () => formula };
+  return { id, title, prose: () => prose, figure, ...written, isReal: true };
+}
 
 /** All that a screen says, of the state that it is in now: what has to be readable. */
 export function wordsOf({ prose, says, predict, formula }: Screen): string[] {

@@ -141,9 +141,7 @@ function Frustum({ camera, name, colour }: { camera: Camera; name: string; colou
       ))}
       <Shape points={corners} class="film" />
       <Dot at={centre} class="s5" />
-      <Label at={centre} dx={8} dy={-4} class="s5 vector">
-        {name}
-      </Label>
+      <Label at={centre} dx={8} dy={-4} class="s5 vector" text={name} />
     </g>
   );
 }

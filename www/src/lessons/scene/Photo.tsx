@@ -3,9 +3,8 @@ import type { Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useDrawn } from "../../app/parts/useDrawn";
 import type { SceneState } from "../../element/sharedScene";
-import { clamp } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
-import { Drawing, Handle } from "../parts/draw";
+import { Drawing, PointHandle } from "../parts/draw";
 import { place } from "../parts/say";
 import { SceneBar } from "./SceneBar";
 import { type LoadedScene, type LoadedView, useScene } from "./useScene";
@@ -45,14 +44,13 @@ export function Photo({ view, title, part, at, children }: PhotoProps) {
           <g transform={`translate(${-x0} ${-y0})`}>
             {children}
             {at !== undefined && (
-              <Handle
-                at={at.value}
+              <PointHandle
                 of={at}
+                size={view}
                 class="s1 on-photo"
                 label={`Point in ${name}`}
                 says={`${place(at.value, 0)} pixels`}
                 step={Math.max(1, w / 200)}
-                to={([x, y]): Vec2 => [clamp(x, 0, width), clamp(y, 0, height)]}
               />
             )}
           </g>

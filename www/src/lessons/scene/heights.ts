@@ -8,9 +8,11 @@ import {
   inverse,
   type Mat,
   norm,
+  outer,
   point2,
   scaled,
   sub,
+  sum,
   unit,
 } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
@@ -40,26 +42,24 @@ export function heightsOf(views: readonly Seeing[]): { middle: number; reach: nu
   return { middle: above - distance, reach: Math.min(MOST_M, 0.3 * distance) };
 }
 
+const IDENTITY = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
+
 const downwards = (ray: Vec3): Vec3 => (ray[2] < 0 ? ray : scaled(ray, -1));
 
 /** The height of the point nearest to all rays; null where they are too parallel to say. */
 function meetOf(rays: readonly { centre: Vec3; ray: Vec3 }[]): number | null {
-  const sum = [0, 1, 2].map(() => [0, 0, 0]);
-  const right = [0, 0, 0];
-  for (const { centre, ray } of rays) {
-    for (let i = 0; i < 3; i += 1) {
-      for (let j = 0; j < 3; j += 1) {
-        const part = (i === j ? 1 : 0) - (ray[i] as number) * (ray[j] as number);
-        (sum[i] as number[])[j] = ((sum[i] as number[])[j] as number) + part;
-        right[i] = (right[i] as number) + part * (centre[j] as number);
-      }
-    }
-  }
+  // Across each ray: I - r rᵀ.
+  const across = rays.map(({ ray }) => sum(IDENTITY, outer(ray, ray), -1));
+  const right = rays.map(({ centre }, i) => apply3(across[i] as Mat, centre)).reduce((a, b) => add(a, b));
   const spread = Math.min(...rays.map(({ ray }) => dot(ray, (rays[0] as { ray: Vec3 }).ray)));
   if (spread > Math.cos(0.06)) {
     return null;
   }
-  const z = (apply3(inverse(sum), right) as Vec3)[2];
+  const z = apply3(inverse(across.reduce((a, b) => sum(a, b))), right)[2];
   return rays.every(({ centre }) => z < centre[2]) ? z : null;
 }
 

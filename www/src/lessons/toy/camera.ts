@@ -74,8 +74,7 @@ export function atDepth(camera: Camera, x: Vec2, depth: number): Vec3 {
 
 /** The point at a height along the ray of an image point. */
 export function atHeight(camera: Camera, x: Vec2, height: number): Vec3 {
-  const ray = rayOf(camera, x);
-  return add(camera.C, scaled(ray, (height - camera.C[2]) / ray[2]));
+  return pointAtHeight(projection(camera), x, height);
 }
 
 /** Depth of a point before a camera. */

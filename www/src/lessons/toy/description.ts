@@ -30,39 +30,29 @@ export function describe(row: readonly number[], breaks: readonly number[], sigm
 }
 
 /** Cuts everywhere, then drops the break that saves most, while any saves: the greedy moves of W96. */
-export function shortest(row: readonly number[], sigma: number): number[] {
-  let breaks = Array.from({ length: row.length - 1 }, (_, i) => i + 1);
-  for (;;) {
-    const now = describe(row, breaks, sigma).total;
-    let best = { total: now, without: -1 };
-    breaks.forEach((_, i) => {
-      const { total } = describe(row, breaks.toSpliced(i, 1), sigma);
-      if (total < best.total) {
-        best = { total, without: i };
-      }
-    });
-    if (best.without < 0) {
-      return breaks;
+export function shortest(row: readonly number[], sigma: number): readonly number[] {
+  const total = (breaks: readonly number[]) => describe(row, breaks, sigma).total;
+  let now = everywhere(row);
+  for (const fewer of byCount(row, sigma).values()) {
+    if (total(fewer) >= total(now)) {
+      return now;
     }
-    breaks = breaks.toSpliced(best.without, 1);
+    now = fewer;
   }
+  return now;
 }
 
 /** Breaks by their number: from one everywhere, dropping the one that leaves the least deviations. */
 export function byCount(row: readonly number[], sigma: number): ReadonlyMap<number, readonly number[]> {
-  let now = Array.from({ length: row.length - 1 }, (_, i) => i + 1);
+  let now = everywhere(row);
   const all = new Map<number, readonly number[]>();
   while (now.length > 0) {
-    const from = now;
-    let best = { data: Number.POSITIVE_INFINITY, without: 0 };
-    from.forEach((_, i) => {
-      const { data } = describe(row, from.toSpliced(i, 1), sigma);
-      if (data < best.data) {
-        best = { data, without: i };
-      }
-    });
-    now = from.toSpliced(best.without, 1);
+    const fewer = now.map((_, i) => now.toSpliced(i, 1));
+    const data = fewer.map((breaks) => describe(row, breaks, sigma).data);
+    now = fewer[data.indexOf(Math.min(...data))] as readonly number[];
     all.set(now.length, now);
   }
   return all;
 }
+
+const everywhere = (row: readonly number[]): readonly number[] => row.slice(1).map((_, i) => i + 1);

@@ -2,7 +2,7 @@
 import { lineThrough } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
 import { type Camera, imageOf, planeOfLine, projection } from "./camera";
-import { normal, stream } from "./evidence";
+import { noisy, stream } from "./evidence";
 import { EDGES } from "./house";
 
 interface SeenLine {
@@ -28,11 +28,8 @@ export function seenLines(
     z,
   ];
   return cameras.flatMap((camera, view) => {
-    const noisy = (X: Vec3): Vec2 => {
-      const [x, y] = imageOf(camera, turned(X));
-      return [x + sigma * normal(random), y + sigma * normal(random)];
-    };
-    const edges = EDGES.map(([p, q]) => lineOf(view, noisy(p), noisy(q), false));
+    const measured = (X: Vec3) => noisy(imageOf(camera, turned(X)), sigma, random);
+    const edges = EDGES.map(([p, q]) => lineOf(view, measured(p), measured(q), false));
     const others = Array.from({ length: strays }, () => {
       const [x, y, along, size] = [
         random() * camera.width,

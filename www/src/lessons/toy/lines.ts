@@ -7,8 +7,12 @@ import {
   lineDistance,
   lineThrough,
   type Mat,
+  outer,
   scaled,
   sub,
+  sum,
+  times,
+  transpose,
 } from "../../shared/linear";
 import type { Vec2, Vec3 } from "../../shared/records";
 import { type Camera, imageOf, meetOfPlanes, planeOfLine, projection } from "./camera";
@@ -57,25 +61,13 @@ export function trifocal(P: Mat, other: Mat, third: Mat): readonly [Mat, Mat, Ma
   const a = P.map((row) => row[3] as number);
   const back = inverse(A);
   const shift = apply3(back, a);
-  // Times the inverse of [A a; 0 1]: then the first matrix is [I | 0].
-  const moved = (M: Mat): Mat =>
-    M.map((row) => {
-      const own = [0, 1, 2].map((j) =>
-        [0, 1, 2].reduce(
-          (sum, k) => sum + (row[k] as number) * ((back[k] as readonly number[])[j] as number),
-          0,
-        ),
-      );
-      return [...own, (row[3] as number) - dot(row.slice(0, 3) as unknown as Vec3, shift)];
-    });
-  const [B, D] = [moved(other), moved(third)];
-  const column = (M: Mat, j: number) => M.map((row) => row[j] as number);
-  const outer = (p: readonly number[], q: readonly number[]): Mat =>
-    p.map((one) => q.map((two) => one * two));
-  return [0, 1, 2].map((i) => {
-    const [plus, minus] = [outer(column(B, i), column(D, 3)), outer(column(B, 3), column(D, i))];
-    return plus.map((row, r) => row.map((one, c) => one - ((minus[r] as readonly number[])[c] as number)));
-  }) as unknown as readonly [Mat, Mat, Mat];
+  // The inverse of [A a; 0 1]: times that, the first matrix is [I | 0].
+  const moving = [...back.map((row, i) => [...row, -(shift[i] as number)]), [0, 0, 0, 1]];
+  const [B, D] = [other, third].map((M) => transpose(times(M, moving))) as [Mat, Mat];
+  const [b4, d4] = [B[3], D[3]] as [Mat[number], Mat[number]];
+  return [0, 1, 2].map((i) =>
+    sum(outer(B[i] as Mat[number], d4), outer(b4, D[i] as Mat[number]), -1),
+  ) as unknown as readonly [Mat, Mat, Mat];
 }
 
 export function transferredLine(T: readonly [Mat, Mat, Mat], line: Vec3, other: Vec3): Vec3 {

@@ -5,30 +5,21 @@ import { selection } from "../../app/state/viewState";
 import { isVerifiedPlane } from "../../shared/proposed";
 import { pickedIndex } from "../../shared/selection";
 import type { Results } from "../list";
-import type { StageStep } from "../tourStep";
+import { ofPicked, type StageStep } from "../tourStep";
 
 export default [
   {
     title: "Corners as wholes",
     text: "A third partner matched no lines at all, but corners with everything that belongs to them: the edges that meet there and the regions between. What borders what in the images borders it in space too, so that one corner proposes several planes at once.",
     question: "Pick a corner that proposes two planes or more, verified by the photographs.",
-    answer: () => {
-      const found = pickedCorner();
-      return found === null
-        ? ""
-        : `${counted(found.views, "views")} show it with ${counted(found.edges, "edges")}. The regions between these lie in ${counted(found.planes, "planes")}: no line was matched, and no plane sought.`;
-    },
-    hint: () => {
-      const found = pickedCorner();
-      return found === null || found.planes > 1
-        ? null
-        : "One plane or none: look for a corner where three edges meet.";
-    },
-    isFound: () => (pickedCorner()?.planes ?? 0) > 1,
+    ...ofPicked(() => cornerParts(results.value, pickedIndex(selection.value, "corner")), {
+      answer: ({ views, edges, planes }) =>
+        `${counted(views, "views")} show it with ${counted(edges, "edges")}. The regions between these lie in ${counted(planes, "planes")}: no line was matched, and no plane sought.`,
+      hint: () => "One plane or none: look for a corner where three edges meet.",
+      isFound: ({ planes }) => planes > 1,
+    }),
   },
 ] satisfies readonly StageStep[];
-
-const pickedCorner = () => cornerParts(results.value, pickedIndex(selection.value, "corner"));
 
 /** What a corner in space is, with the planes of its regions that the photographs verify; null where there is none. */
 export function cornerParts({ adjacency }: Pick<Results, "adjacency">, index: number) {

@@ -5,7 +5,8 @@ import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "../../app/pa
 import { counted } from "../../app/parts/counted";
 import { degreesOf, grouped } from "../../app/parts/numberText";
 import { PlaneChoice } from "../../app/view/figures/PlaneChoice";
-import { LINE_STRIDE } from "../../shared/flatArrays";
+import { LINE_STRIDE, lineAt } from "../../shared/flatArrays";
+import { boundsOf, mix3, nearestOf, sub } from "../../shared/linear";
 import { category } from "../../shared/palette";
 import type { ClusterTrace, Directions, Vec2 } from "../../shared/records";
 import { pickedIndex, type Selection } from "../../shared/selection";
@@ -72,12 +73,12 @@ function ClusterPlane({ frame, figure, plane, trace }: PlaneProps) {
       onClick={(across, height) => {
         const distance = ([u, v]: Vec2) =>
           Math.hypot((u - across) / (x.max - x.min), (v - height) / (y.max - y.min));
-        figure.act.select(
-          nearest(
-            [...linesOf(lines, trace), ...rejectedOf(plane, trace)],
-            ([one, at]) => distance(at) - (one.kind === "line" ? RING : 0),
-          ),
+        const found = nearestOf(
+          [...linesOf(lines, trace), ...rejectedOf(plane, trace)],
+          ([one, at]) => distance(at) - (one.kind === "line" ? RING : 0),
+          REACH,
         );
+        figure.act.select(found?.[0] ?? null);
       }}
     >
       <clipPath id={clip}>
@@ -122,47 +123,25 @@ function stretched([ax, ay]: Vec2, [bx, by]: Vec2): [Vec2, Vec2] {
 }
 
 function rangesOf(places: readonly Vec2[]): [Scale, Scale] {
-  const range = (values: number[], margin: number): Scale => ({
-    min: Math.min(...values, Number.POSITIVE_INFINITY) - margin,
-    max: Math.max(...values, Number.NEGATIVE_INFINITY) + margin,
-  });
-  return places.length === 0
-    ? [
-        { min: -10, max: 10 },
-        { min: 0, max: 10 },
-      ]
-    : [
-        range(
-          places.map(([across]) => across),
-          2,
-        ),
-        range(
-          places.map(([, height]) => height),
-          1.5,
-        ),
-      ];
+  const [x0, y0, x1, y1] = places.length === 0 ? [-8, 1.5, 8, 8.5] : boundsOf(places);
+  return [
+    { min: x0 - 2, max: x1 + 2 },
+    { min: y0 - 1.5, max: y1 + 1.5 },
+  ];
 }
 
 type Lines = Results["lines"];
 
-/** (across, height) of the middle of a 3D line in the plane of a trace. */
-function placeOf(lines: Lines, line: number, { azimuth }: ClusterTrace): Vec2 {
-  const n = lines?.subarray(line * LINE_STRIDE, (line + 1) * LINE_STRIDE) ?? new Float64Array(LINE_STRIDE);
-  const [x, y, z] = [0, 1, 2].map((k) => ((n[k] as number) + (n[k + 3] as number)) / 2) as [
-    number,
-    number,
-    number,
-  ];
-  return [-Math.sin(azimuth) * x + Math.cos(azimuth) * y, z];
-}
-
-function isAlong(lines: Lines, line: number, { azimuth }: ClusterTrace): boolean {
-  const n = lines?.subarray(line * LINE_STRIDE, (line + 1) * LINE_STRIDE);
-  if (n === undefined) {
-    return false;
+/** (across, height) of the middle of a 3D line in the plane of a trace; null where it does not run across this plane. */
+function placeOf(lines: Lines, line: number, { azimuth }: ClusterTrace): Vec2 | null {
+  const ends = lineAt(lines, line);
+  if (ends === null) {
+    return null;
   }
-  const turn = Math.atan2((n[4] as number) - (n[1] as number), (n[3] as number) - (n[0] as number)) - azimuth;
-  return Math.abs(Math.sin(turn)) < 0.02;
+  const [dx, dy] = sub(ends[1], ends[0]);
+  const [x, y, z] = mix3(...ends, 0.5);
+  const isAlong = Math.abs(Math.sin(Math.atan2(dy, dx) - azimuth)) < 0.02;
+  return isAlong ? [-Math.sin(azimuth) * x + Math.cos(azimuth) * y, z] : null;
 }
 
 /** Share of the chart's sides within which a click finds something. */
@@ -173,9 +152,10 @@ const RING = 0.012;
 /** The 3D lines of this direction and where they lie in the plane. */
 function linesOf(lines: Lines, trace: ClusterTrace): Place[] {
   const all = Array.from({ length: (lines?.length ?? 0) / LINE_STRIDE }, (_, line) => line);
-  return all
-    .filter((line) => isAlong(lines, line, trace))
-    .map((index): Place => [{ kind: "line", index }, placeOf(lines, index, trace)]);
+  return all.flatMap((index): Place[] => {
+    const place = placeOf(lines, index, trace);
+    return place === null ? [] : [[{ kind: "line", index }, place]];
+  });
 }
 
 function rejectedOf(plane: number, trace: ClusterTrace): Place[] {
@@ -184,30 +164,13 @@ function rejectedOf(plane: number, trace: ClusterTrace): Place[] {
 
 type Place = readonly [Selection, Vec2];
 
-function nearest(places: readonly Place[], distance: (place: Place) => number): Selection | null {
-  let best: Selection | null = null;
-  let least = REACH;
-  for (const place of places) {
-    const away = distance(place);
-    if (away < least) {
-      best = place[0];
-      least = away;
-    }
-  }
-  return best;
-}
-
 /** Where the selected thing lies in this plane; null where it does not. */
 function placeOfSelection(
   { selection: picked, results: { lines } }: Figure,
   plane: number,
   trace: ClusterTrace,
 ): Vec2 | null {
-  const line = pickedIndex(picked, "line");
-  if (line >= 0 && isAlong(lines, line, trace)) {
-    return placeOf(lines, line, trace);
-  }
   return picked?.kind === "cluster" && picked.plane === plane
     ? (trace.refused[picked.index]?.[0] ?? null)
-    : null;
+    : placeOf(lines, pickedIndex(picked, "line"), trace);
 }

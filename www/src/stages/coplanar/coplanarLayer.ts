@@ -6,53 +6,44 @@ import { Group } from "three";
 import { category, PALETTE } from "../../shared/palette";
 import { isVerifiedSet } from "../../shared/proposed";
 import type { CoplanarSet, CoplanarSets } from "../../shared/records";
-import { pickedIndex, type Selection } from "../../shared/selection";
-import { zUpGroup } from "../../viewer/scene/frame";
-import { disposeObject, fade, type Layer } from "../../viewer/scene/layer";
-import { SelectedObject } from "../../viewer/scene/selectedObject";
+import type { Layer } from "../../viewer/scene/layer";
+import { partsLayer } from "../../viewer/scene/partsLayer";
 import { endsOf, sidesOf, strokes } from "../../viewer/scene/strokes";
 
 const WIDTH_PX = { polygon: 3.5, hull: 1.5, refused: 1, line: 2, selected: 5 };
-const OPACITY = { polygon: 1, hull: 0.8, refused: 0.35 };
-/** Of everything but the selection. */
-const DIMMED = 0.25;
+/** Alone, and while something is selected. */
+const OPACITY = { polygon: [1, 0.25], hull: [0.8, 0.2], refused: [0.35, 0.0875] } as const;
 
 /** @param lines p0 and p1 of each 3D line, local frame, metres */
 export function buildCoplanar({ sets }: CoplanarSets, lines: Float64Array): Layer {
-  const object = zUpGroup();
   const numbered = sets.map((set, index) => ({ set, index }));
   const verified = numbered.filter(({ set }) => isVerifiedSet(set));
   const refused = numbered.filter(({ set }) => !isVerifiedSet(set));
   // One entry a side: a click on a side picks its set.
-  const sides = verified.flatMap(({ set, index }) => set.polygon.map(() => index));
-  const parts = {
-    polygon: strokes(
-      sidesOf(verified.map(({ set }) => set.polygon)),
-      sides.map((index) => category(index)),
-      WIDTH_PX.polygon,
-    ),
-    hull: strokes(sidesOf(verified.map(({ set }) => set.hull)), PALETTE.grown, WIDTH_PX.hull),
-    refused: strokes(sidesOf(refused.map(({ set }) => set.polygon)), PALETTE.unmatched, WIDTH_PX.refused),
-  };
-  const refusedSides = refused.flatMap(({ set, index }) => set.polygon.map(() => index));
-  parts.hull.raycast = () => undefined;
-  object.add(...Object.values(parts));
-  const chosen = new SelectedObject(object);
-  return {
-    object,
-    pick: (hit) => {
-      const at = hit.faceIndex ?? -1;
-      const of = hit.object === parts.polygon ? sides : hit.object === parts.refused ? refusedSides : [];
-      const index = of[at];
-      return index === undefined ? null : { kind: "coplanar", index };
+  const sides = (of: typeof numbered) => of.flatMap(({ set, index }) => set.polygon.map(() => index));
+  const polygons = (of: typeof numbered) => sidesOf(of.map(({ set }) => set.polygon));
+  const hull = strokes(sidesOf(verified.map(({ set }) => set.hull)), PALETTE.grown, WIDTH_PX.hull);
+  hull.raycast = () => undefined;
+  return partsLayer({
+    kind: "coplanar",
+    parts: [
+      {
+        drawn: strokes(polygons(verified), sides(verified).map(category), WIDTH_PX.polygon),
+        opacity: OPACITY.polygon,
+        things: sides(verified),
+      },
+      { drawn: hull, opacity: OPACITY.hull },
+      {
+        drawn: strokes(polygons(refused), PALETTE.unmatched, WIDTH_PX.refused),
+        opacity: OPACITY.refused,
+        things: sides(refused),
+      },
+    ],
+    chosen: (index) => {
+      const set = sets[index];
+      return set === undefined ? null : chosenSet(set, lines);
     },
-    highlight(selection: Selection | null) {
-      fade(parts, OPACITY, selection === null ? 1 : DIMMED);
-      const set = sets[pickedIndex(selection, "coplanar")];
-      chosen.show(set === undefined ? null : chosenSet(set, lines));
-    },
-    dispose: () => disposeObject(object),
-  };
+  });
 }
 
 /** A set's hull, its lines and its polygon, over all else. */

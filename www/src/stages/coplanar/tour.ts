@@ -5,7 +5,7 @@ import { selection } from "../../app/state/viewState";
 import { coplanarSetsOf } from "../../shared/records";
 import { pickedIndex } from "../../shared/selection";
 import type { Results } from "../list";
-import type { StageStep } from "../tourStep";
+import { ofPicked, type StageStep } from "../tourStep";
 
 export default [
   {
@@ -13,29 +13,17 @@ export default [
     text: "Another partner of the project looked for faces, not for half-planes: lines that lie in one plane are grouped, the convex hull of their ends is closed to a polygon by right angles and symmetry, and the photographs verify it.",
     question:
       "Pick a polygon of a facet of the model in which a side without a line was made square or mirrored.",
-    answer: () => {
-      const found = pickedSet();
-      return found === null
-        ? ""
-        : `${counted(found.lines, "lines")} lie in one plane. ${counted(found.moved, "sides")} without a line close their polygon, by right angles or symmetry.`;
-    },
-    hint: () => {
-      const found = pickedSet();
-      if (found === null) {
-        return null;
-      }
-      return found.moved === 0
-        ? "Every side of this one lies on a line: look for another."
-        : "No facet of the model has this polygon: it may lie on the ground.";
-    },
-    isFound: () => {
-      const found = pickedSet();
-      return found !== null && found.moved > 0 && found.facets.length > 0;
-    },
+    ...ofPicked(() => coplanarSetParts(results.value, pickedIndex(selection.value, "coplanar")), {
+      answer: ({ lines, moved }) =>
+        `${counted(lines, "lines")} lie in one plane. ${counted(moved, "sides")} without a line close their polygon, by right angles or symmetry.`,
+      hint: ({ moved }) =>
+        moved === 0
+          ? "Every side of this one lies on a line: look for another."
+          : "No facet of the model has this polygon: it may lie on the ground.",
+      isFound: ({ moved, facets }) => moved > 0 && facets.length > 0,
+    }),
   },
 ] satisfies readonly StageStep[];
-
-const pickedSet = () => coplanarSetParts(results.value, pickedIndex(selection.value, "coplanar"));
 
 /** What a set of coplanar lines is; null where there is none. */
 export function coplanarSetParts({ coplanar, facets }: Pick<Results, "coplanar" | "facets">, index: number) {

@@ -6,17 +6,16 @@ import { type BufferGeometry, Group, type Mesh, type MeshBasicMaterial } from "t
 import { rectangle } from "../../shared/linear";
 import { CLASS_COLOURS, PALETTE } from "../../shared/palette";
 import type { DensePlane, DensePlanes, Patch } from "../../shared/records";
-import { pickedIndex, type Selection } from "../../shared/selection";
 import { gradientOf, heightAt, likeliestClass, planesOfPatches } from "../../shared/surfaceClass";
 import { opacityOf } from "../../viewer/scene/certainty";
-import { zUpGroup } from "../../viewer/scene/frame";
-import { colouredMesh, disposeObject, type Layer, quads, rgb } from "../../viewer/scene/layer";
-import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { colouredMesh, type Layer, quads, rgb } from "../../viewer/scene/layer";
+import { partsLayer } from "../../viewer/scene/partsLayer";
 import { strokes } from "../../viewer/scene/strokes";
 
 /** Side of a square over the distance of neighbours: narrow gaps let single patches be seen. */
 const SIDE = { inPlane: 0.94, free: 0.36 };
-const OPACITY = { all: 0.95, free: 0.9, dimmed: 0.25 };
+/** Alone, and while something is selected. */
+const OPACITY = { inPlane: [0.95, 0.25], free: [0.9, 0.25] } as const;
 const STEM_PX = 1.25;
 
 interface Square {
@@ -28,34 +27,29 @@ interface Square {
 
 export function buildDense(dense: DensePlanes): Layer {
   const { patches, spacing_m } = dense.trace;
-  const object = zUpGroup();
   const owners = planesOfPatches(dense);
   const looks = dense.planes.map(lookOf);
   const inPlane = patches.map((_, i) => i).filter((i) => (owners[i] as number) >= 0);
   const free = patches.filter((_, i) => (owners[i] as number) < 0);
   const squareOf = (i: number) => looks[owners[i] as number]?.(patches[i] as Patch) as Square;
-  const all = squares(inPlane.map(squareOf), SIDE.inPlane * spacing_m);
   const others = squares(free.map(freeSquare), SIDE.free * spacing_m);
   others.raycast = () => undefined;
-  object.add(all, others);
-  const chosen = new SelectedObject(object);
-
-  return {
-    object,
-    pick: (hit) => {
-      const patch = inPlane[Math.floor((hit.faceIndex ?? -1) / 2)];
-      return hit.object === all && patch !== undefined
-        ? { kind: "dense", index: owners[patch] as number }
-        : null;
+  return partsLayer({
+    kind: "dense",
+    parts: [
+      {
+        drawn: squares(inPlane.map(squareOf), SIDE.inPlane * spacing_m),
+        opacity: OPACITY.inPlane,
+        things: inPlane.map((i) => owners[i] as number),
+        facesEach: 2,
+      },
+      { drawn: others, opacity: OPACITY.free },
+    ],
+    chosen: (index) => {
+      const plane = dense.planes[index];
+      return plane === undefined ? null : chosenPlane(plane, plane.patches.map(squareOf), dense);
     },
-    highlight(selection: Selection | null) {
-      all.material.opacity = selection === null ? OPACITY.all : OPACITY.dimmed;
-      others.material.opacity = selection === null ? OPACITY.free : OPACITY.dimmed;
-      const plane = dense.planes[pickedIndex(selection, "dense")];
-      chosen.show(plane === undefined ? null : chosenPlane(plane, plane.patches.map(squareOf), dense));
-    },
-    dispose: () => disposeObject(object),
-  };
+  });
 }
 
 /** A plane's patches, and from each a stem to the height that it had by itself. */

@@ -7,34 +7,23 @@ import { densePlanesOf } from "../../shared/records";
 import { pickedIndex } from "../../shared/selection";
 import { likeliestClass } from "../../shared/surfaceClass";
 import type { Results } from "../list";
-import type { StageStep } from "../tourStep";
+import { ofPicked, type StageStep } from "../tourStep";
 
 export default [
   {
     title: "Dense planes",
     text: "Not every roof has a line that starts its plane. So small patches are matched all over the plan, by their texture alone, and those in one plane are joined. They find lawns and trees as well: what is a building follows from height, roughness and colour.",
     question: "Pick a plane that is most probably a building, and that a facet of the model has.",
-    answer: () => {
-      const found = pickedDensePlane();
-      return found === null ? "" : `${denseWords(found)} ${halfPlaneWords(found)}`;
-    },
-    hint: () => {
-      const found = pickedDensePlane();
-      if (found === null) {
-        return null;
-      }
-      return found.name === "building"
-        ? "Most probably a building, but no facet of the model has this plane."
-        : `Most probably ${found.name} (${percentText(found.probability)}): look for another colour.`;
-    },
-    isFound: () => {
-      const found = pickedDensePlane();
-      return found?.name === "building" && found.facets.length > 0;
-    },
+    ...ofPicked(() => densePlaneParts(results.value, pickedIndex(selection.value, "dense")), {
+      answer: (plane) => `${denseWords(plane)} ${halfPlaneWords(plane)}`,
+      hint: ({ name, probability }) =>
+        name === "building"
+          ? "Most probably a building, but no facet of the model has this plane."
+          : `Most probably ${name} (${percentText(probability)}): look for another colour.`,
+      isFound: ({ name, facets }) => name === "building" && facets.length > 0,
+    }),
   },
 ] satisfies readonly StageStep[];
-
-const pickedDensePlane = () => densePlaneParts(results.value, pickedIndex(selection.value, "dense"));
 
 type DensePlaneParts = NonNullable<ReturnType<typeof densePlaneParts>>;
 

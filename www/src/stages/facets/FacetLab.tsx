@@ -84,6 +84,27 @@ function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
     frame.width / 2 + ((x as number) - (x0 + x1) / 2) * scale,
     frame.height / 2 - ((y as number) - (y0 + y1) / 2) * scale,
   ];
+  const areas: readonly Omit<AreaProps, "figure">[] = [
+    ...facets.map((facet, index) => ({
+      picks: { kind: "facet", index } as const,
+      name: `Facet ${index}`,
+      className: "plan-facet",
+      fill: roofTintHex(facet),
+      d: closedPathOf(facet.outer.map(at)),
+    })),
+    ...verification.rejected.map(({ outline, reason }, index) => ({
+      picks: { kind: "rejectedFacet", index } as const,
+      name: `Rejected: ${facetRejectionWords(reason)}`,
+      className: "plan-rejected",
+      d: closedPathOf(outline.map(at)),
+    })),
+    ...footprints.map(({ name, verdict, bounds_m }, index) => ({
+      picks: { kind: "footprint", index } as const,
+      name: `Footprint ${name}: ${FOOTPRINT_WORDS[verdict]}`,
+      className: `plan-footprint ${verdict}`,
+      d: closedPathOf(rectangle(...bounds_m).map(at)),
+    })),
+  ];
   return (
     // biome-ignore lint/a11y/useSemanticElements: SVG has no fieldset
     <svg
@@ -93,36 +114,8 @@ function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
       aria-label={`Plan: ${counted(grouping.borders.length, "border lines")}, ${counted(grouping.cells, "cells")}, ${counted(outlines.length, "facets")}; ${verification.rejected.length} rejected`}
       data-testid="plan"
     >
-      {facets.map((facet, i) => (
-        <PlanArea
-          key={i}
-          figure={figure}
-          picks={{ kind: "facet", index: i }}
-          name={`Facet ${i}`}
-          className="plan-facet"
-          fill={roofTintHex(facet)}
-          d={closedPathOf(facet.outer.map(at))}
-        />
-      ))}
-      {verification.rejected.map(({ outline, reason }, i) => (
-        <PlanArea
-          key={i}
-          figure={figure}
-          picks={{ kind: "rejectedFacet", index: i }}
-          name={`Rejected: ${facetRejectionWords(reason)}`}
-          className="plan-rejected"
-          d={closedPathOf(outline.map(at))}
-        />
-      ))}
-      {footprints.map(({ name, verdict, bounds_m }, i) => (
-        <PlanArea
-          key={i}
-          figure={figure}
-          picks={{ kind: "footprint", index: i }}
-          name={`Footprint ${name}: ${FOOTPRINT_WORDS[verdict]}`}
-          className={`plan-footprint ${verdict}`}
-          d={closedPathOf(rectangle(...bounds_m).map(at))}
-        />
+      {areas.map((area) => (
+        <PlanArea key={`${area.picks.kind} ${area.picks.index}`} figure={figure} {...area} />
       ))}
       {BORDER_KINDS.map((kind) => {
         const own = grouping.borders.filter((border) => border.kind === kind);
@@ -148,15 +141,17 @@ function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
   );
 }
 
-/** An outline that can be picked, by key as well. */
-function PlanArea(of: {
+interface AreaProps {
   figure: Figure;
   picks: { kind: "facet" | "rejectedFacet" | "footprint"; index: number };
   name: string;
   className: string;
   fill?: string;
   d: string;
-}) {
+}
+
+/** An outline that can be picked, by key as well. */
+function PlanArea(of: AreaProps) {
   const { kind, index } = of.picks;
   const picked = of.figure.selection;
   const isChosen = picked?.kind === kind && picked.index === index;

@@ -5,19 +5,16 @@
 import { Color } from "three";
 import { category, PALETTE } from "../../shared/palette";
 import { type Facet, type GroupingTrace, isMadeFrom, type Segment3 } from "../../shared/records";
-import { pickedIndex, type Selection } from "../../shared/selection";
 import { facetMesh, triangulate } from "../../viewer/layers/facets";
 import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
-import { zUpGroup } from "../../viewer/scene/frame";
-import { disposeObject, fade, type Layer } from "../../viewer/scene/layer";
+import type { Layer } from "../../viewer/scene/layer";
 import { nameLabels } from "../../viewer/scene/nameLabels";
-import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { partsLayer } from "../../viewer/scene/partsLayer";
 import { endsOf, strokes } from "../../viewer/scene/strokes";
 
 const WIDTH_PX = { roof: 3, other: 1.25, found: 1.75, selected: 5 };
-const OPACITY = { roof: 1, other: 0.35, found: 0.8, area: 0.45 };
-/** Of everything but the selection. */
-const DIMMED = 0.3;
+/** Alone, and while something is selected. */
+const OPACITY = { roof: [1, 0.3], other: [0.35, 0.105], found: [0.8, 0.24], area: [0.45, 0.135] } as const;
 
 /**
  * @param lines p0 and p1 of each 3D line, local frame, metres
@@ -28,18 +25,20 @@ export function buildGroups(
   lines: Float64Array,
   facets: readonly Facet[] = [],
 ): Layer {
-  const object = zUpGroup();
   const became = facets.map((facet) => groupOf(facet, grouping));
   const owner = owners(grouping, new Set(became));
   const isRoof = ([, group]: readonly [number, number]) => facets.length === 0 || became.includes(group);
   const roof = [...owner].filter(isRoof);
   const other = [...owner].filter((one) => !isRoof(one));
-  const drawn = (members: readonly (readonly [number, number])[], widthPx: number) =>
-    strokes(
-      members.flatMap(([line]) => endsOf(lines, line)),
-      members.map(([, group]) => category(group)),
-      widthPx,
-    );
+  const drawn = (members: readonly (readonly [number, number])[], look: "roof" | "other") => {
+    const ends = members.flatMap(([line]) => endsOf(lines, line));
+    const things = members.map(([, group]) => group);
+    return {
+      drawn: strokes(ends, things.map(category), WIDTH_PX[look]),
+      opacity: OPACITY[look],
+      things,
+    };
+  };
   const outlines = facets.map(({ outer }) => outer);
   const found = grouping.plane_lines.filter(
     ({ segment }) => facets.length === 0 || isOver(segment, outlines),
@@ -48,39 +47,25 @@ export function buildGroups(
     facets.map(triangulate),
     became.map((group) => new Color(group < 0 ? PALETTE.unmatched : category(group))),
   );
-  const parts = {
-    roof: drawn(roof, WIDTH_PX.roof),
-    other: drawn(other, WIDTH_PX.other),
-    found: strokes(
-      found.flatMap(({ segment }) => [...segment.p0, ...segment.p1]),
-      PALETTE.border,
-      WIDTH_PX.found,
-    ),
-    area: areas,
-  };
-  object.add(...Object.values(parts), nameLabels(namesOf(facets, became)));
+  const foundEnds = found.flatMap(({ segment }) => [...segment.p0, ...segment.p1]);
   const groupOfTriangle = facets.flatMap((facet, i) =>
     new Array<number>(triangulate(facet).length / 9).fill(became[i] as number),
   );
-  const chosen = new SelectedObject(object);
-
-  return {
-    object,
-    pick: (hit) => {
-      const at = hit.faceIndex ?? -1;
-      const members = hit.object === parts.roof ? roof : hit.object === parts.other ? other : [];
-      const group = hit.object === areas ? groupOfTriangle[at] : members[at]?.[1];
-      return group === undefined || group < 0 ? null : { kind: "group", index: group };
-    },
-    highlight(selection: Selection | null) {
-      fade(parts, OPACITY, selection === null ? 1 : DIMMED);
-      const group = grouping.groups[pickedIndex(selection, "group")];
-      const own = [...new Set(group?.members.map(({ line }) => line))];
+  return partsLayer({
+    kind: "group",
+    parts: [
+      drawn(roof, "roof"),
+      drawn(other, "other"),
+      { drawn: strokes(foundEnds, PALETTE.border, WIDTH_PX.found), opacity: OPACITY.found },
+      { drawn: areas, opacity: OPACITY.area, things: groupOfTriangle },
+    ],
+    beside: [nameLabels(namesOf(facets, became))],
+    chosen: (index) => {
+      const own = [...new Set(grouping.groups[index]?.members.map(({ line }) => line))];
       const positions = own.flatMap((line) => endsOf(lines, line));
-      chosen.show(own.length === 0 ? null : strokes(positions, PALETTE.selected, WIDTH_PX.selected));
+      return own.length === 0 ? null : strokes(positions, PALETTE.selected, WIDTH_PX.selected);
     },
-    dispose: () => disposeObject(object),
-  };
+  });
 }
 
 /** The group that each line is drawn for: of several, one that became a facet, and of these the largest. */

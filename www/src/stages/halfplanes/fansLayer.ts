@@ -1,16 +1,17 @@
 /** Half-planes as fans: a strip from the 3D line into the half-plane, fading away from the line. */
 import { BufferGeometry, LineBasicMaterial, LineSegments, Vector3 } from "three";
-import { LINE_STRIDE } from "../../shared/flatArrays";
+import { LINE_STRIDE, lineAt } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import { type HalfPlane, isRejected, type Side, type SideRecord, type Vec3 } from "../../shared/records";
-import { pickedIndex, type Selection } from "../../shared/selection";
 import { fanRing, fanWidth } from "../../viewer/scene/fanRing";
 import { zUpGroup } from "../../viewer/scene/frame";
-import { colouredMesh, disposeObject, type Layer, quads, rgb, unpicked } from "../../viewer/scene/layer";
-import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { colouredMesh, type Layer, layerOf, quads, rgb } from "../../viewer/scene/layer";
+import { partsLayer } from "../../viewer/scene/partsLayer";
 
 const REJECTED_OFFSET_M = 0.25;
-const ALPHA = { near: 0.75, far: 0.08, dimmed: 0.3 };
+const ALPHA = { near: 0.75, far: 0.08 };
+/** Alone, and while something is selected. */
+const OPACITY = { fans: [1, 0.3], rejected: [0.8, 0.3] } as const;
 
 /**
  * @param lines p0 and p1 of each 3D line, local frame, metres
@@ -21,33 +22,33 @@ export function buildFans(
   lines: Float64Array,
   sides: readonly SideRecord[] = [],
 ): Layer {
-  const object = zUpGroup();
   // While lines have been found anew, these are still of the earlier ones.
   const areOfLines = [...halfPlanes, ...sides].every(({ line }) => (line + 1) * LINE_STRIDE <= lines.length);
   const corners = areOfLines ? halfPlanes.map((halfPlane) => fanCorners(halfPlane, lines)) : [];
-  const all = fanMesh(corners, PALETTE.halfPlane);
   const rejectedSides = areOfLines ? sides.filter(isRejected) : [];
-  const rejected = rejectedLines(rejectedSides, lines);
-  object.add(all, rejected);
-  const chosen = new SelectedObject(object);
-
-  return {
-    object,
-    pick: (hit) => {
-      if (hit.object !== rejected) {
-        return { kind: "halfplane", index: Math.floor((hit.faceIndex ?? 0) / 2) };
-      }
-      const side = rejectedSides[Math.floor((hit.index ?? -1) / 2)];
-      return side === undefined ? null : { kind: "side", line: side.line, side: side.side };
+  return partsLayer({
+    kind: "halfplane",
+    parts: [
+      {
+        drawn: fanMesh(corners, PALETTE.halfPlane),
+        opacity: OPACITY.fans,
+        things: corners.map((_, i) => i),
+        facesEach: 2,
+      },
+      {
+        drawn: rejectedLines(rejectedSides, lines),
+        opacity: OPACITY.rejected,
+        pick: (hit) => {
+          const side = rejectedSides[Math.floor((hit.index ?? -1) / 2)];
+          return side === undefined ? null : { kind: "side", line: side.line, side: side.side };
+        },
+      },
+    ],
+    chosen: (index) => {
+      const corner = corners[index];
+      return corner === undefined ? null : fanMesh([corner], PALETTE.selected, 2);
     },
-    highlight(selection: Selection | null) {
-      all.material.opacity = selection === null ? 1 : ALPHA.dimmed;
-      rejected.material.opacity = selection === null ? 0.8 : ALPHA.dimmed;
-      const corner = corners[pickedIndex(selection, "halfplane")];
-      chosen.show(corner === undefined ? null : fanMesh([corner], PALETTE.selected, 2));
-    },
-    dispose: () => disposeObject(object),
-  };
+  });
 }
 
 /** The half-plane that is being turned by hand: one fan at `theta` (radians) about the line from `p0` to `p1`. */
@@ -65,7 +66,7 @@ export function buildTurning(ends: readonly [Vec3, Vec3], side: Side, theta: num
   up.multiplyScalar(up.z < 0 ? -1 : 1);
   const away = outward.multiplyScalar(width * Math.cos(theta)).addScaledVector(up, width * Math.sin(theta));
   object.add(fanMesh([[p0, p1, p1.clone().add(away), p0.clone().add(away)]], PALETTE.selected, 3));
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }
 
 /** A thin line beside the 3D line, on the rejected side of it. */
@@ -74,9 +75,7 @@ function rejectedLines(
   lines: Float64Array,
 ): LineSegments<BufferGeometry, LineBasicMaterial> {
   const points = sides.flatMap(({ line, side }) => {
-    const at = line * LINE_STRIDE;
-    const p0 = new Vector3().fromArray(lines, at);
-    const p1 = new Vector3().fromArray(lines, at + 3);
+    const [p0, p1] = (lineAt(lines, line) ?? []).map((end) => new Vector3(...end)) as [Vector3, Vector3];
     const left = new Vector3(p0.y - p1.y, p1.x - p0.x, 0).normalize();
     const away = left.multiplyScalar(side === "left" ? REJECTED_OFFSET_M : -REJECTED_OFFSET_M);
     return [p0.add(away), p1.add(away)];

@@ -27,19 +27,12 @@ function Accuracy({ frame, figure }: { frame: Frame; figure: Figure }) {
   }
   const counts = [...new Set(records.map(({ supports }) => supports.length))].sort((a, b) => a - b);
   const x = { min: (counts[0] ?? 3) - 0.6, max: (counts.at(-1) ?? 3) + 0.6 };
-  const y = {
-    min: 0,
-    max:
-      1.1 *
-      quantile(
-        records.map(({ sigma_m }) => 100 * sigma_m),
-        0.98,
-      ),
-  };
+  const sigmas = records.map(({ sigma_m }) => 100 * sigma_m);
+  const y = { min: 0, max: 1.1 * quantile(sigmas, 0.98) };
   const [toX, toY] = axesOf(frame, x, y);
   const places = records.map(
-    ({ sigma_m, supports }, i) =>
-      [toX(supports.length + scatter(i)), toY(Math.min(y.max, 100 * sigma_m))] as const,
+    ({ supports }, i) =>
+      [toX(supports.length + scatter(i)), toY(Math.min(y.max, sigmas[i] as number))] as const,
   );
   return (
     <Chart
@@ -58,20 +51,9 @@ function Accuracy({ frame, figure }: { frame: Frame; figure: Figure }) {
     >
       <path class="dot-line" d={dotsOf(places)} data-count={places.length} />
       {counts.map((count) => {
-        const own = records
-          .filter(({ supports }) => supports.length === count)
-          .map(({ sigma_m }) => 100 * sigma_m);
-        const median = toY(quantile(own, 0.5));
-        return (
-          <line
-            key={count}
-            class="median"
-            x1={toX(count - 0.34)}
-            x2={toX(count + 0.34)}
-            y1={median}
-            y2={median}
-          />
-        );
+        const own = sigmas.filter((_, i) => records[i]?.supports.length === count);
+        const [from, to, median] = [toX(count - 0.34), toX(count + 0.34), toY(quantile(own, 0.5))];
+        return <line key={count} class="median" x1={from} x2={to} y1={median} y2={median} />;
       })}
       {places
         .filter((_, i) => i === picked)

@@ -5,9 +5,8 @@ import { PALETTE } from "../../shared/palette";
 import type { LineOrigin, LineRecord } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { opacityOf } from "../../viewer/scene/certainty";
-import { zUpGroup } from "../../viewer/scene/frame";
-import { disposeObject, type Layer } from "../../viewer/scene/layer";
-import { SelectedObject } from "../../viewer/scene/selectedObject";
+import type { Layer } from "../../viewer/scene/layer";
+import { type Part, partsLayer } from "../../viewer/scene/partsLayer";
 import { endsOf, strokes } from "../../viewer/scene/strokes";
 
 const WIDTH_PX = 2.25;
@@ -48,7 +47,6 @@ export function buildLines(
   records: readonly LineRecord[],
   linesOf: (selection: Selection | null) => readonly number[],
 ): Layer {
-  const object = zUpGroup();
   const count = Math.floor(lines.length / LINE_STRIDE);
   const indices = Array.from({ length: count }, (_, i) => i);
   const unseen = (index: number) => records[index] !== undefined && isUnseen(records[index]);
@@ -67,32 +65,18 @@ export function buildLines(
   const parts = [indices.filter((i) => !unseen(i)), indices.filter(unseen)]
     .flatMap((alike) => opacities.map((one) => alike.filter((i) => opacity(i) === one)))
     .filter((own) => own.length > 0)
-    .map((own) => ({ own, opacity: opacity(own[0] as number), drawn: draw(own) }));
-  for (const { drawn } of parts) {
-    object.add(drawn);
-  }
-  const dim = (by: number) => {
-    for (const part of parts) {
-      part.drawn.material.opacity = by * part.opacity;
-    }
-  };
-  dim(1);
-  const chosen = new SelectedObject(object);
-
-  return {
-    object,
-    pick: (hit) => {
-      const part = parts.find(({ drawn }) => drawn === hit.object);
-      const index = part?.own[hit.faceIndex ?? -1];
-      return index === undefined ? null : { kind: "line", index };
-    },
-    highlight(selection: Selection | null) {
-      dim(selection === null ? 1 : DIMMED);
+    .map((own): Part => {
+      const alone = opacity(own[0] as number);
+      return { drawn: draw(own), opacity: [alone, DIMMED * alone], things: own };
+    });
+  return partsLayer({
+    kind: "line",
+    parts,
+    chosen: (_, selection) => {
       const own = linesOf(selection).filter((index) => index < count);
-      chosen.show(own.length === 0 ? null : above(own.flatMap((index) => endsOf(lines, index))));
+      return own.length === 0 ? null : above(own.flatMap((index) => endsOf(lines, index)));
     },
-    dispose: () => disposeObject(object),
-  };
+  });
 }
 
 function dashed(drawn: LineSegments2): LineSegments2 {

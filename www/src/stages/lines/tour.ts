@@ -1,9 +1,10 @@
 /** The tour: lines grow. */
 import { results } from "../../app/state/results";
 import { beforeGrowing, selection, showBeforeGrowing } from "../../app/state/viewState";
-import { LINE_STRIDE, STRETCH_STRIDE } from "../../shared/flatArrays";
+import { lengthOf, lineAt, STRETCH_STRIDE } from "../../shared/flatArrays";
+import { pickedIndex } from "../../shared/selection";
 import type { Results } from "../list";
-import type { StageStep } from "../tourStep";
+import { ofPicked, type StageStep } from "../tourStep";
 
 const GREW_M = 0.5;
 
@@ -12,35 +13,25 @@ export default [
     title: "Merging and growing",
     text: "A 3D line collects fragments from all views: where one view has a gap, another has not.",
     question: `Switch between Before growing and After, and pick a line that became at least ${GREW_M} m longer.`,
-    answer: () => {
-      const { line, before, after } = pickedLine();
-      return `Line ${line} showed ${before.toFixed(1)} m in one piece before, and is ${after.toFixed(1)} m long now.`;
-    },
-    hint: () => {
-      const { line, before, after } = pickedLine();
-      if (line === null) {
-        return null;
-      }
-      return beforeGrowing.value
-        ? "This is before growing."
-        : `Line ${line} is ${after.toFixed(1)} m long, ${before.toFixed(1)} m before: look for one that gained more.`;
-    },
+    ...ofPicked(pickedLine, {
+      answer: ({ line, before, after }) =>
+        `Line ${line} showed ${before.toFixed(1)} m in one piece before, and is ${after.toFixed(1)} m long now.`,
+      hint: ({ line, before, after }) =>
+        beforeGrowing.value
+          ? "This is before growing."
+          : `Line ${line} is ${after.toFixed(1)} m long, ${before.toFixed(1)} m before: look for one that gained more.`,
+      isFound: ({ before, after }) => !beforeGrowing.value && before > 0 && after - before >= GREW_M,
+    }),
     pointsTo: "growing",
     prepare: () => {
       showBeforeGrowing(true);
     },
-    isFound: () => {
-      const { line, before, after } = pickedLine();
-      return !beforeGrowing.value && line !== null && before > 0 && after - before >= GREW_M;
-    },
   },
 ] satisfies readonly StageStep[];
 
-function pickedLine(): { line: number | null; before: number; after: number } {
-  const picked = selection.value;
-  return picked?.kind === "line"
-    ? { line: picked.index, ...growthOf(results.value, picked.index) }
-    : { line: null, before: 0, after: 0 };
+function pickedLine() {
+  const line = pickedIndex(selection.value, "line");
+  return line < 0 ? null : { line, ...growthOf(results.value, line) };
 }
 
 /** Longest stretch of a 3D line that segments showed before growing, and its length now, metres. */
@@ -48,17 +39,10 @@ export function growthOf(
   { lines, stretches }: Pick<Results, "lines" | "stretches">,
   line: number,
 ): { before: number; after: number } {
-  const own = stretches ?? new Float64Array();
-  let before = 0;
-  for (let at = 0; at < own.length; at += STRETCH_STRIDE) {
-    if (own[at] === line) {
-      before = Math.max(before, lengthAt(own, at + 1));
-    }
-  }
-  return { before, after: lines === null ? 0 : lengthAt(lines, line * LINE_STRIDE) };
-}
-
-function lengthAt(numbers: Float64Array, at: number): number {
-  const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0] = numbers.subarray(at, at + LINE_STRIDE);
-  return Math.hypot(d - a, e - b, f - c);
+  const count = (stretches?.length ?? 0) / STRETCH_STRIDE;
+  const own = Array.from({ length: count }, (_, i) => i).filter(
+    (i) => stretches?.[i * STRETCH_STRIDE] === line,
+  );
+  const lengths = own.map((i) => lengthOf(lineAt(stretches, i, STRETCH_STRIDE, 1)));
+  return { before: Math.max(0, ...lengths), after: lengthOf(lineAt(lines, line)) };
 }

@@ -7,17 +7,16 @@ import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import type { LineRecord } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import { zUpGroup } from "../../viewer/scene/frame";
-import { BOTH_SIDES, disposeObject, type Layer } from "../../viewer/scene/layer";
-import { SelectedObject } from "../../viewer/scene/selectedObject";
+import { BOTH_SIDES, type Layer } from "../../viewer/scene/layer";
+import { partsLayer } from "../../viewer/scene/partsLayer";
 
 /** xx, xy, xz, yy, yz, zz of a symmetric matrix, m². */
 export type Covariance = LineRecord["covariance"][number];
 
 /** Corners of an ellipse. */
 const CORNERS = 16;
-const OPACITY = 0.5;
-const DIMMED = 0.12;
+/** Alone, and while something is selected. */
+const OPACITY = [0.5, 0.12] as const;
 /** The middle tube is to have at most this radius, metres: seen beside a house, and smaller. */
 const WANTED_M = 1;
 const FACTORS = [1, 2, 5, 10, 20, 50, 100] as const;
@@ -39,21 +38,16 @@ export function buildUncertainty(
   factor: number,
   linesOf: (selection: Selection | null) => readonly number[],
 ): Layer {
-  const object = zUpGroup();
   const tubes = records.map((record, i) => tubeOf(lines, i, record, factor));
-  const all = meshOf(tubes, PALETTE.merged);
-  object.add(all);
-  const chosen = new SelectedObject(object);
-  return {
-    object,
-    pick: (hit) => ({ kind: "line", index: Math.floor((hit.faceIndex ?? 0) / (2 * CORNERS)) }),
-    highlight(selection: Selection | null) {
-      all.material.opacity = selection === null ? OPACITY : DIMMED;
+  const drawn = meshOf(tubes, PALETTE.merged);
+  return partsLayer({
+    kind: "line",
+    parts: [{ drawn, opacity: OPACITY, things: tubes.map((_, i) => i), facesEach: 2 * CORNERS }],
+    chosen: (_, selection) => {
       const own = linesOf(selection).flatMap((index) => tubes[index] ?? []);
-      chosen.show(own.length === 0 ? null : meshOf([own], PALETTE.selected));
+      return own.length === 0 ? null : meshOf([own], PALETTE.selected);
     },
-    dispose: () => disposeObject(object),
-  };
+  });
 }
 
 /** The rings of both ends, one after the other: three numbers a corner. */
@@ -119,7 +113,7 @@ function meshOf(tubes: readonly number[][], colour: string): Mesh<BufferGeometry
   const material = new MeshBasicMaterial({
     color: colour,
     transparent: true,
-    opacity: OPACITY,
+    opacity: OPACITY[0],
     ...BOTH_SIDES,
     depthWrite: false,
   });

@@ -3,6 +3,7 @@
 import type { Row } from "../../app/results/takeAlong/rows";
 import type { Overlay } from "../../app/view/images/drawing";
 import { ImageRow } from "../../app/view/images/ImageRow";
+import { lengthOf, segmentAt } from "../../shared/flatArrays";
 import type { Selection } from "../../shared/selection";
 import { type Figure, viewName } from "../figure";
 import type { StageFigure } from "../stageFigure";
@@ -90,21 +91,19 @@ const LONGEST = 0.25;
 /** The longest segment of the first view that is part of a match, of those that may be sides of roofs. */
 function longSegment({ scene, results: { supports, segments } }: Figure): Selection | null {
   const longest = LONGEST * (scene?.views[0]?.width ?? Number.POSITIVE_INFINITY);
-  const own = segments[0];
-  const matched = supports[0];
-  if (own === undefined || own.length < 4) {
-    return null;
-  }
+  const [own, matched] = [segments[0], supports[0]];
   let best = { index: 0, length: 0 };
-  for (let i = 0; 4 * i < own.length; i += 1) {
-    const [x0, y0, x1, y1] = own.subarray(4 * i, 4 * i + 4) as unknown as [number, number, number, number];
-    const length = Math.hypot(x1 - x0, y1 - y0);
-    const isMatched = matched !== undefined && isAmong(matched, [x0, y0]);
+  for (let index = 0; ; index += 1) {
+    const ends = segmentAt(own, index);
+    if (ends === null) {
+      return index === 0 ? null : { kind: "segment", view: 0, index: best.index };
+    }
+    const length = lengthOf(ends);
+    const isMatched = matched !== undefined && isAmong(matched, ends[0]);
     if (isMatched && length > best.length && length <= longest) {
-      best = { index: i, length };
+      best = { index, length };
     }
   }
-  return { kind: "segment", view: 0, index: best.index };
 }
 
 /** Whether a stretch that was matched begins or ends at a point. */

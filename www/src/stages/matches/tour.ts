@@ -65,8 +65,8 @@ async function showVaryingSegment(): Promise<void> {
   const isHere = stay();
   let best = { index: -1, at: 0.5, range: 0 };
   for (const index of roofSegments(results.value, FIRST_VIEW).slice(0, TRIED.segments)) {
-    const tried = await correlationsAlong(index);
-    const [least, most] = [tried.reduce(lower, tried[0]), tried.reduce(higher, tried[0])];
+    const tried = (await correlationsAlong(index)).sort((a, b) => a.value - b.value);
+    const [least, most] = [tried[0], tried.at(-1)];
     if (least !== undefined && most !== undefined && most.value > CLEAR_CORRELATION) {
       const range = most.value - least.value;
       best = range > best.range ? { index, at: least.at, range } : best;
@@ -84,10 +84,6 @@ interface Tried {
   at: number;
   value: number;
 }
-
-const lower = (a: Tried | undefined, b: Tried) => (a !== undefined && a.value <= b.value ? a : b);
-
-const higher = (a: Tried | undefined, b: Tried) => (a !== undefined && a.value >= b.value ? a : b);
 
 /** Correlations of a segment with its best candidate, at places along it. */
 async function correlationsAlong(segment: number): Promise<Tried[]> {

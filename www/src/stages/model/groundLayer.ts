@@ -12,7 +12,7 @@ import {
 } from "three";
 import type { GroundTexture } from "../../shared/calls";
 import { zUpGroup } from "../../viewer/scene/frame";
-import { BOTH_SIDES, disposeObject, type Layer, unpicked } from "../../viewer/scene/layer";
+import { BOTH_SIDES, type Layer, layerOf } from "../../viewer/scene/layer";
 
 export function buildGround({ about, rgba }: GroundTexture): Layer {
   const geometry = new BufferGeometry().setFromPoints(about.corners.map((corner) => new Vector3(...corner)));
@@ -36,5 +36,5 @@ export function buildGround({ about, rgba }: GroundTexture): Layer {
   const mesh = new Mesh(geometry, material);
   const object = zUpGroup();
   object.add(mesh);
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }

@@ -6,6 +6,7 @@ import { counted } from "../../app/parts/counted";
 import { RELATION_WORDS, refinementWords } from "../../app/parts/reasonText";
 import { SplitLab } from "../../app/view/figures/SplitLab";
 import { buildingOfFacet, relationLimit } from "../../kinds/parts/refinedBuildings";
+import { clamp } from "../../shared/linear";
 import type { BuildingRefinement, TestedRelation } from "../../shared/records";
 import { pickedIndex } from "../../shared/selection";
 import type { Figure } from "../figure";
@@ -69,6 +70,7 @@ function Relations({ outer, figure, building, of }: RelationsProps) {
   const [toX, toY, upright, level] = axesOf(frame, x, y);
   const row = (kind: TestedRelation["kind"]) => KINDS.length - KINDS.indexOf(kind);
   const limit = relationLimit(figure.params);
+  const picked = figure.selection;
   if (of.relations.length === 0) {
     return <p class="lab-hint muted">No relation was near enough to be tested here.</p>;
   }
@@ -93,47 +95,25 @@ function Relations({ outer, figure, building, of }: RelationsProps) {
         </g>
       ))}
       {limit !== null && <line class="threshold" {...upright(Math.log10(limit))} />}
-      {of.relations.map((one, i) => (
-        <Dot
-          key={i}
-          relation={one}
-          cx={toX(Math.min(MOST, Math.max(LEAST, Math.log10(Math.max(one.chi2, 1e-9)))))}
-          cy={toY(row(one.kind)) + spread(i)}
-          isPicked={isPicked(figure, building, i)}
-          onPick={() => {
-            figure.act.select({ kind: "relation", building, index: i });
-          }}
-        />
-      ))}
+      {of.relations.map(({ kind, chi2, adopted }, index) => {
+        const isPicked =
+          picked?.kind === "relation" && picked.building === building && picked.index === index;
+        const outcome = adopted ? "adopted" : "rejected";
+        return (
+          <circle
+            key={index}
+            {...buttonShape(`${RELATION_WORDS[kind]}, χ² ${chi2.toFixed(1)}, ${outcome}`, isPicked, () =>
+              figure.act.select({ kind: "relation", building, index }),
+            )}
+            class={`relation ${outcome} ${isPicked ? "picked-dot" : ""}`}
+            cx={toX(clamp(Math.log10(Math.max(chi2, 1e-9)), LEAST, MOST))}
+            cy={toY(row(kind)) + spread(index)}
+            r={isPicked ? 6 : 4}
+          />
+        );
+      })}
     </Chart>
   );
-}
-
-function Dot(of: {
-  relation: TestedRelation;
-  cx: number;
-  cy: number;
-  isPicked: boolean;
-  onPick: () => void;
-}) {
-  const { kind, chi2, adopted } = of.relation;
-  return (
-    <circle
-      {...buttonShape(
-        `${RELATION_WORDS[kind]}, χ² ${chi2.toFixed(1)}, ${adopted ? "adopted" : "rejected"}`,
-        of.isPicked,
-        of.onPick,
-      )}
-      class={`relation ${adopted ? "adopted" : "rejected"} ${of.isPicked ? "picked-dot" : ""}`}
-      cx={of.cx}
-      cy={of.cy}
-      r={of.isPicked ? 6 : 4}
-    />
-  );
-}
-
-function isPicked({ selection: picked }: Figure, building: number, index: number): boolean {
-  return picked?.kind === "relation" && picked.building === building && picked.index === index;
 }
 
 /** Moves the dots of a row apart, the same way every time. */

@@ -7,35 +7,26 @@ import { PALETTE } from "../../shared/palette";
 import { outlinesBefore } from "../../shared/proposed";
 import type { Refinement, Segment3 } from "../../shared/records";
 import { pickedIndex, type Selection } from "../../shared/selection";
-import { zUpGroup } from "../../viewer/scene/frame";
-import { disposeObject, type Layer } from "../../viewer/scene/layer";
-import { SelectedObject } from "../../viewer/scene/selectedObject";
+import type { Layer } from "../../viewer/scene/layer";
+import { partsLayer } from "../../viewer/scene/partsLayer";
 import { sidesOf, strokes } from "../../viewer/scene/strokes";
 
 const WIDTH_PX = 1.75;
 const SELECTED_PX = 4;
-const DIMMED = 0.3;
+/** Alone, and while something is selected. */
+const OPACITY = [1, 0.3] as const;
 
 export function buildRefinement(refinement: Refinement): Layer {
-  const object = zUpGroup();
-  const facets = refinement.before.facets;
-  const before = over(
-    sidesOf(facets.flatMap(({ outer, holes }) => [outer, ...holes])),
-    PALETTE.grown,
-    WIDTH_PX,
-  );
-  const gaps = over(ends(refinement.gaps.map(({ side }) => side)), PALETTE.rejected, WIDTH_PX);
-  object.add(before, gaps);
-  const chosen = new SelectedObject(object);
-  return {
-    object,
-    pick: () => null,
-    highlight(selection: Selection | null) {
-      before.material.opacity = selection === null ? 1 : DIMMED;
-      chosen.show(shownOf(refinement, selection));
-    },
-    dispose: () => disposeObject(object),
-  };
+  const rings = refinement.before.facets.flatMap(({ outer, holes }) => [outer, ...holes]);
+  const gaps = ends(refinement.gaps.map(({ side }) => side));
+  return partsLayer({
+    kind: "refinement",
+    parts: [
+      { drawn: over(sidesOf(rings), PALETTE.grown, WIDTH_PX), opacity: OPACITY },
+      { drawn: over(gaps, PALETTE.rejected, WIDTH_PX) },
+    ],
+    chosen: (_, selection) => shownOf(refinement, selection),
+  });
 }
 
 /** The old outline of a building with the sides of its relations, or the sides of one of them. */

@@ -13,11 +13,12 @@ import {
   SRGBColorSpace,
   Vector3,
 } from "three";
+import { rectangle } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import type { ViewInfo } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { zUpGroup } from "../scene/frame";
-import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
+import { BOTH_SIDES, type Layer, layerOf } from "../scene/layer";
 
 /**
  * Width of a photograph at its camera over the distance of the nearest other camera: frusta of long focal lengths are so
@@ -49,8 +50,7 @@ export function buildCameras(
   const photos = views.map((view, i) => photoMesh(view, target, width, images[i]));
   object.add(points, ...lines, ...photos.filter((photo) => photo !== null));
 
-  return {
-    object,
+  return layerOf(object, {
     pick: (hit) => {
       const index =
         hit.object === points
@@ -71,8 +71,7 @@ export function buildCameras(
         }
       });
     },
-    dispose: () => disposeObject(object),
-  };
+  });
 }
 
 function nearestDistance(centres: readonly Vector3[]): number {
@@ -140,27 +139,11 @@ export function groundCorners(view: ViewInfo, centre: Vector3, z: number): Vecto
   if (p.length !== 12) {
     return null;
   }
-  const [a, b, c, , d, e, f, , g, h, i] = p as [
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-  ];
-  const rayOfPixel = new Matrix3(a, b, c, d, e, f, g, h, i).invert();
+  // The first three columns of P, by columns as three.js has them.
+  const columns = [0, 1, 2].flatMap((column) => [p[column], p[column + 4], p[column + 8]] as number[]);
+  const rayOfPixel = new Matrix3().fromArray(columns).invert();
   const corners: Vector3[] = [];
-  for (const [x, y] of [
-    [0, 0],
-    [view.width, 0],
-    [view.width, view.height],
-    [0, view.height],
-  ] as const) {
+  for (const [x, y] of rectangle([0, 0], [view.width, view.height])) {
     const ray = new Vector3(x, y, 1).applyMatrix3(rayOfPixel);
     const depth = (z - centre.z) / ray.z;
     if (!Number.isFinite(depth) || depth <= 0) {

@@ -13,47 +13,34 @@ import {
 import { edgesOf } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import type { Facet, Vec3 } from "../../shared/records";
-import { pickedIndex, type Selection } from "../../shared/selection";
 import { opacityOf } from "../scene/certainty";
 import { middleOf } from "../scene/facetPlan";
-import { zUpGroup } from "../scene/frame";
-import { colouredMesh, disposeObject, type Layer } from "../scene/layer";
+import { BEHIND_LINES, colouredMesh, type Layer } from "../scene/layer";
 import { nameLabels } from "../scene/nameLabels";
+import { partsLayer } from "../scene/partsLayer";
 import { roofTint } from "../scene/roofTint";
-import { SelectedObject } from "../scene/selectedObject";
 
 const DIMMED = 0.3;
 const OPACITY = 0.92;
 
 /** @param areNamed by their numbers, which those of a preliminary model do not keep */
 export function buildFacets(facets: readonly Facet[], areNamed = true): Layer {
-  const object = zUpGroup();
   const triangles = facets.map(triangulate);
   const facetOfTriangle = triangles.flatMap((positions, i) =>
     new Array<number>(positions.length / 9).fill(i),
   );
   const opacities = facets.map(({ probability }) => opacityOf(probability));
-  const all = facetMesh(triangles, facets.map(normalTint), opacities);
+  const drawn = facetMesh(triangles, facets.map(normalTint), opacities);
   const names = facets.map(({ outer }, i) => ({ text: String(i), at: middleOf(outer) }));
-  object.add(all, outlines(facets));
-  if (areNamed) {
-    object.add(nameLabels(names));
-  }
-  const chosen = new SelectedObject(object);
-
-  return {
-    object,
-    pick: (hit) => {
-      const index = facetOfTriangle[hit.faceIndex ?? -1];
-      return index === undefined ? null : { kind: "facet", index };
+  return partsLayer({
+    kind: "facet",
+    parts: [{ drawn, opacity: [OPACITY, DIMMED], things: facetOfTriangle }],
+    beside: [outlines(facets), ...(areNamed ? [nameLabels(names)] : [])],
+    chosen: (index) => {
+      const one = triangles[index];
+      return one === undefined ? null : facetMesh([one], [new Color(PALETTE.selected)]);
     },
-    highlight(selection: Selection | null) {
-      all.material.opacity = selection === null ? OPACITY : DIMMED;
-      const one = triangles[pickedIndex(selection, "facet")];
-      chosen.show(one === undefined ? null : facetMesh([one], [new Color(PALETTE.selected)]));
-    },
-    dispose: () => disposeObject(object),
-  };
+  });
 }
 
 /** The tint of a plane, for three. */
@@ -80,8 +67,7 @@ export function facetMesh(
     const tint = [...(tints[i] as Color).toArray(), opacities[i] ?? 1];
     return new Array(positions.length / 3).fill(tint).flat() as number[];
   });
-  const behindLines = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
-  return colouredMesh(triangles.flat(), colours, null, { opacity: OPACITY, ...behindLines });
+  return colouredMesh(triangles.flat(), colours, null, { opacity: OPACITY, ...BEHIND_LINES });
 }
 
 function outlines(facets: readonly Facet[]): LineSegments {

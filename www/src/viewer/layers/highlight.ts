@@ -2,7 +2,7 @@
 import { PALETTE } from "../../shared/palette";
 import type { Vec3 } from "../../shared/records";
 import { zUpGroup } from "../scene/frame";
-import { disposeObject, type Layer, unpicked } from "../scene/layer";
+import { type Layer, layerOf } from "../scene/layer";
 import { sidesOf, strokes } from "../scene/strokes";
 
 const WIDTH_PX = 4;
@@ -22,7 +22,7 @@ export function buildHighlight(polylines: readonly Polyline[]): Layer {
   if (sides.length > 0) {
     object.add(above(sides));
   }
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }
 
 function above(positions: readonly number[]) {

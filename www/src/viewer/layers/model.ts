@@ -19,8 +19,7 @@ import {
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PALETTE, type ThemeColours } from "../../shared/palette";
 import type { Selection } from "../../shared/selection";
-import { disposeObject, type Layer } from "../scene/layer";
-import { SelectedObject } from "../scene/selectedObject";
+import { BEHIND_LINES, disposeObject, type Layer, SelectedObject, trianglesOf } from "../scene/layer";
 import { normalTint } from "./facets";
 
 export type ModelMode = "textured" | "plain" | "wireframe" | "normals" | "method" | "sun";
@@ -64,12 +63,7 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
   const own = [...new Set(textured.values())] as MeshBasicMaterial[];
   const colours = new Map(own.map((material) => [material, material.color.clone()]));
   await inShortTasks(meshes, addTint);
-  const normals = new MeshBasicMaterial({
-    vertexColors: true,
-    polygonOffset: true,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
-  });
+  const normals = new MeshBasicMaterial({ vertexColors: true, ...BEHIND_LINES });
   const plain = clay();
   const painted = new Map<string, Material>();
   let facetColours: readonly string[] = [];
@@ -82,11 +76,7 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
     painted.set(colour, paint);
     return paint;
   };
-  const hidden = new MeshBasicMaterial({
-    polygonOffset: true,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
-  });
+  const hidden = new MeshBasicMaterial(BEHIND_LINES);
   const positions: number[] = [];
   await inShortTasks(meshes, (mesh) => positions.push(...edgePositions(mesh)));
   const edges = edgeLines(positions);
@@ -194,21 +184,14 @@ function numberOrNull(value: unknown): number | null {
 }
 
 function areaOf(geometry: BufferGeometry): number {
-  const positions = geometry.getAttribute("position");
-  const count = geometry.index?.count ?? positions.count;
-  const corner = (i: number) => new Vector3().fromBufferAttribute(positions, geometry.index?.getX(i) ?? i);
-  let area = 0;
-  for (let i = 0; i + 2 < count; i += 3) {
-    area += new Triangle(corner(i), corner(i + 1), corner(i + 2)).getArea();
-  }
-  return area;
+  return trianglesOf(geometry).reduce((sum, corners) => sum + new Triangle(...corners).getArea(), 0);
 }
 
 /** Gives every corner of a face the tint of the face's own normal, as facets have it. */
 function addTint({ geometry }: Mesh): void {
   const positions = geometry.getAttribute("position");
-  const corner = (i: number) => new Vector3().fromBufferAttribute(positions, geometry.index?.getX(i) ?? i);
-  const normal = new Triangle(corner(0), corner(1), corner(2)).getNormal(new Vector3());
+  const [corners] = trianglesOf(geometry);
+  const normal = corners ? new Triangle(...corners).getNormal(new Vector3()) : new Vector3(0, 1, 0);
   // The GLB is Y up: back to Z up.
   const tint = normalTint({ plane: { normal: [normal.x, -normal.z, normal.y], d: 0 } }).toArray();
   const colours = Float32Array.from({ length: 3 * positions.count }, (_, i) => tint[i % 3] as number);
@@ -250,12 +233,8 @@ function markerOf(meshes: readonly Mesh[]): Object3D {
     const tint = new Mesh(
       mesh.geometry.clone(),
       new MeshBasicMaterial({
-        color: PALETTE.selected,
-        transparent: true,
-        opacity: 0.35,
-        polygonOffset: true,
-        polygonOffsetFactor: -1,
-        polygonOffsetUnits: -1,
+        ...{ color: PALETTE.selected, transparent: true, opacity: 0.35 },
+        ...{ polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 },
       }),
     );
     const outline = new LineSegments(

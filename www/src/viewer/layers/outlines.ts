@@ -2,7 +2,7 @@
 import { PALETTE } from "../../shared/palette";
 import type { Facet } from "../../shared/records";
 import { zUpGroup } from "../scene/frame";
-import { disposeObject, type Layer, unpicked } from "../scene/layer";
+import { type Layer, layerOf } from "../scene/layer";
 import { sidesOf, strokes } from "../scene/strokes";
 
 const WIDTH_PX = 3;
@@ -15,5 +15,5 @@ export function buildOutlines(facets: readonly Facet[]): Layer {
   lines.renderOrder = 3;
   lines.raycast = () => undefined;
   object.add(lines);
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }

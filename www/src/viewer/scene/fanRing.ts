@@ -1,5 +1,5 @@
 /** A half-plane as a strip from its line, for the eye only: it has no width of its own. */
-import { LINE_STRIDE } from "../../shared/flatArrays";
+import { lineAt } from "../../shared/flatArrays";
 import { add, cross, norm, scaled, sub, unit } from "../../shared/linear";
 import type { HalfPlane, Vec3 } from "../../shared/records";
 
@@ -7,15 +7,18 @@ import type { HalfPlane, Vec3 } from "../../shared/records";
 const RELATIVE_WIDTH = 0.35;
 const WIDTH_M = { min: 0.6, max: 3 };
 
+const NO_LINE: readonly [Vec3, Vec3] = [
+  [0, 0, 0],
+  [0, 0, 0],
+];
+
 export function fanWidth(lengthM: number): number {
   return Math.min(WIDTH_M.max, Math.max(WIDTH_M.min, lengthM * RELATIVE_WIDTH));
 }
 
 /** Start and end on the line, then end and start away from it; local frame, metres. */
 export function fanRing(halfPlane: HalfPlane, lines: Float64Array): [Vec3, Vec3, Vec3, Vec3] {
-  const at = halfPlane.line * LINE_STRIDE;
-  const end = (from: number): Vec3 => [lines[from] ?? 0, lines[from + 1] ?? 0, lines[from + 2] ?? 0];
-  const [p0, p1] = [end(at), end(at + 3)];
+  const [p0, p1] = lineAt(lines, halfPlane.line) ?? NO_LINE;
   const along = sub(p1, p0);
   const away = awayFromLine(halfPlane, unit(along));
   const width = fanWidth(norm(along));

@@ -1,6 +1,6 @@
 /** The grid on the ground below what is shown. */
 import { GridHelper, type LineBasicMaterial, type Sphere } from "three";
-import { disposeObject, type Layer, unpicked } from "./layer";
+import { type Layer, layerOf } from "./layer";
 
 export const GRID_STEP_M = 10;
 /** Farther out it would be a grey haze. */
@@ -14,5 +14,5 @@ export function buildGrid({ center, radius }: Sphere, floor: number, colour: str
   object.position.set(snapped(center.x), floor, snapped(center.z));
   (object.material as LineBasicMaterial).depthWrite = false;
   object.raycast = () => undefined;
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }

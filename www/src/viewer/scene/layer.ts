@@ -3,7 +3,9 @@ import {
   BufferAttribute,
   BufferGeometry,
   Color,
+  DirectionalLight,
   DoubleSide,
+  HemisphereLight,
   type Intersection,
   type Material,
   Mesh,
@@ -11,6 +13,7 @@ import {
   type MeshBasicMaterialParameters,
   type Object3D,
   Texture,
+  Vector3,
 } from "three";
 import type { Selection } from "../../shared/selection";
 
@@ -24,21 +27,31 @@ export interface Layer {
   dispose(): void;
 }
 
-/** The layer for looking at only: a selection is not of its things. */
-export function unpicked({ object, dispose }: Pick<Layer, "object" | "dispose">): Layer {
-  return { object, pick: () => null, highlight: () => undefined, dispose };
+/** A layer of an object: for looking at only, as far as nothing else is said. */
+export function layerOf(object: Object3D, of: Partial<Omit<Layer, "object">> = {}): Layer {
+  return {
+    object,
+    pick: () => null,
+    highlight: () => undefined,
+    dispose: () => disposeObject(object),
+    ...of,
+  };
 }
 
-/** Makes all parts of a layer as opaque as each of them is, or fainter. */
-export function fade<Name extends string>(
-  parts: Readonly<Record<Name, { material: Material }>>,
-  opacities: Readonly<Record<Name, number>>,
-  by: number,
-): void {
-  for (const name of Object.keys(parts) as Name[]) {
-    parts[name].material.opacity = opacities[name] * by;
-  }
+/** The light of all scenes: the sky's, and a sun's from above. */
+export function daylight(): [HemisphereLight, DirectionalLight] {
+  const sun = new DirectionalLight(0xffffff, 2.2);
+  sun.position.set(-0.6, 1, 0.5);
+  return [new HemisphereLight(0xffffff, 0x8a8580, 1.4), sun];
 }
+
+/** The layer for looking at only: a selection is not of its things. */
+export function unpicked({ object, dispose }: Pick<Layer, "object" | "dispose">): Layer {
+  return layerOf(object, { dispose });
+}
+
+/** Behind lines that lie in it: else the two would fight for each pixel. */
+export const BEHIND_LINES = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 } as const;
 
 /** Seen from both sides by one shader: what is transparent would be drawn in two passes, each with its own. */
 export const BOTH_SIDES = { side: DoubleSide, forceSinglePass: true } as const;
@@ -90,6 +103,14 @@ export function colouredMesh(
   );
 }
 
+/** The corners of each triangle of a mesh, in its own frame. */
+export function trianglesOf(geometry: BufferGeometry): [Vector3, Vector3, Vector3][] {
+  const positions = geometry.getAttribute("position");
+  const count = Math.floor((geometry.index?.count ?? positions.count) / 3);
+  const corner = (i: number) => new Vector3().fromBufferAttribute(positions, geometry.index?.getX(i) ?? i);
+  return Array.from({ length: count }, (_, i) => [corner(3 * i), corner(3 * i + 1), corner(3 * i + 2)]);
+}
+
 /** The corners of the triangles of so many figures of four corners, one after the other. */
 export function quads(count: number): number[] {
   return Array.from({ length: count }, (_, i) => [0, 1, 2, 0, 2, 3].map((corner) => 4 * i + corner)).flat();
@@ -98,4 +119,28 @@ export function quads(count: number): number[] {
 /** A colour's components as the vertex attributes of a geometry want them. */
 export function rgb(colour: string): [number, number, number] {
   return new Color(colour).toArray() as [number, number, number];
+}
+
+/** The one object of a layer that shows what is selected: unpickable, and made anew with every selection. */
+export class SelectedObject {
+  #shown: Object3D | null = null;
+  readonly #parent: Object3D;
+
+  constructor(parent: Object3D) {
+    this.#parent = parent;
+  }
+
+  show(object: Object3D | null): void {
+    if (this.#shown !== null) {
+      this.#parent.remove(this.#shown);
+      disposeObject(this.#shown);
+    }
+    this.#shown = object;
+    if (object !== null) {
+      object.traverse((one) => {
+        one.raycast = () => undefined;
+      });
+      this.#parent.add(object);
+    }
+  }
 }

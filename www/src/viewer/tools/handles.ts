@@ -9,8 +9,9 @@ import {
   type Vector2,
   Vector3,
 } from "three";
+import { nearestOf } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
-import { disposeObject, type Layer, unpicked } from "../scene/layer";
+import { type Layer, layerOf } from "../scene/layer";
 
 /** A dot is taken within this distance, CSS pixels. */
 const REACH_PX = 12;
@@ -18,19 +19,22 @@ const DOT_PX = 11;
 /** Nothing is dragged further, metres: near the horizon a pixel is a field. */
 const FURTHEST_M = 30;
 
+/** Of the canvas, or of its half, CSS pixels. */
+export interface Size {
+  width: number;
+  height: number;
+}
+
 /** The dot at a place of the canvas, in clip coordinates; -1 for none. */
-export function handleAt(
-  at: Vector2,
-  handles: readonly Vector3[],
-  camera: Camera,
-  size: { width: number; height: number },
-): number {
-  const distance = (handle: Vector3) => {
-    const seen = handle.clone().project(camera);
-    return Math.hypot(((seen.x - at.x) * size.width) / 2, ((seen.y - at.y) * size.height) / 2);
-  };
-  const nearest = handles.map((handle, i) => ({ i, d: distance(handle) })).sort((a, b) => a.d - b.d)[0];
-  return nearest !== undefined && nearest.d <= REACH_PX ? nearest.i : -1;
+export function handleAt(at: Vector2, handles: readonly Vector3[], camera: Camera, size: Size): number {
+  const nearest = nearestOf(handles, (handle) => pixelsAway(handle, at, camera, size), REACH_PX);
+  return nearest === null ? -1 : handles.indexOf(nearest);
+}
+
+/** How far from a place of the canvas, in clip coordinates, a point is seen, CSS pixels. */
+export function pixelsAway(point: Vector3, at: Vector2, camera: Camera, size: Size): number {
+  const { x, y } = point.clone().project(camera);
+  return Math.hypot(((x - at.x) * size.width) / 2, ((y - at.y) * size.height) / 2);
 }
 
 /** Where a dot is dragged to: on its level, or above and below it. */
@@ -48,7 +52,7 @@ export function dragged(from: Vector3, ray: Ray, isUpright: boolean): Vector3 | 
 export function buildHandles(handles: readonly Vector3[]): Layer {
   const object = dots(handles, PALETTE.selected, DOT_PX);
   object.renderOrder = 10;
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }
 
 /** Dots of one size on the screen, over whatever lies before them. */

@@ -9,10 +9,10 @@ import {
   type Vector2,
   Vector3,
 } from "three";
-import { areaVector, norm } from "../../shared/linear";
+import { areaVector, edgesOf, nearestOf, norm } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
-import { disposeObject, type Layer, unpicked } from "../scene/layer";
-import { dots } from "./handles";
+import { type Layer, layerOf } from "../scene/layer";
+import { dots, pixelsAway, type Size } from "./handles";
 
 export interface Measured {
   points: number;
@@ -48,32 +48,21 @@ const HIDDEN_M = 0.5;
 /**
  * The corner of a ring near a place of the canvas, or else the place of an edge; null where both are far or hidden.
  *
- * @param at in clip coordinates; `size` is that of the canvas, or of its half
+ * @param at in clip coordinates
  * @param seen the surface at that place
  */
 export function snapped(
-  {
-    at,
-    ray,
-    camera,
-    size,
-  }: { at: Vector2; ray: Ray; camera: Camera; size: { width: number; height: number } },
+  { at, ray, camera, size }: { at: Vector2; ray: Ray; camera: Camera; size: Size },
   rings: readonly (readonly Corner[])[],
   seen: Vector3 | null,
 ): Taken | null {
   const farthest = (seen?.distanceTo(ray.origin) ?? Number.POSITIVE_INFINITY) + HIDDEN_M;
   const nearest = (places: readonly Taken[]): Taken | null => {
-    const near = places.flatMap((place) => {
-      const { x, y } = place.at.clone().project(camera);
-      const px = Math.hypot(((x - at.x) * size.width) / 2, ((y - at.y) * size.height) / 2);
-      return px <= REACH_PX && place.at.distanceTo(ray.origin) <= farthest ? [{ place, px }] : [];
-    });
-    return near.sort((a, b) => a.px - b.px)[0]?.place ?? null;
+    const before = places.filter((place) => place.at.distanceTo(ray.origin) <= farthest);
+    return nearestOf(before, (place) => pixelsAway(place.at, at, camera, size), REACH_PX);
   };
   const corners = rings.flat().map(({ at, sigma }): Taken => ({ at, on: "corner", sigma }));
-  const edges = rings.flatMap((ring) =>
-    ring.map((a, i) => onEdge(ray, a, ring[(i + 1) % ring.length] as Corner)),
-  );
+  const edges = rings.flatMap((ring) => edgesOf(ring).map((ends) => onEdge(ray, ...ends)));
   return nearest(corners) ?? nearest(edges);
 }
 
@@ -89,16 +78,9 @@ function onEdge(ray: Ray, a: Corner, b: Corner): Taken {
 /** @param points in the viewer's frame (Y up), metres */
 export function measure(points: readonly Vector3[]): Measured {
   const [a, b] = [points.at(-2), points.at(-1)];
-  const none = {
-    points: points.length,
-    distanceM: null,
-    planM: null,
-    heightM: null,
-    slope: null,
-    areaM2: null,
-  };
   if (a === undefined || b === undefined) {
-    return none;
+    const none = { distanceM: null, planM: null, heightM: null, slope: null, areaM2: null };
+    return { points: points.length, ...none };
   }
   const step = b.clone().sub(a);
   const planM = Math.hypot(step.x, step.z);
@@ -124,5 +106,5 @@ export function buildMeasure(points: readonly Vector3[]): Layer {
     one.raycast = () => undefined;
     object.add(one);
   }
-  return unpicked({ object, dispose: () => disposeObject(object) });
+  return layerOf(object);
 }

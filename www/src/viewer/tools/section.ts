@@ -1,6 +1,7 @@
 /** A vertical cut through what is shown: the profile between two points, and what lies in front of it clipped away. */
-import { type BufferGeometry, Mesh, type Object3D, Plane, Vector3 } from "three";
+import { Mesh, type Object3D, Plane, Vector3 } from "three";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { trianglesOf } from "../scene/layer";
 
 /** Metres along the cut from its first point, and height in the viewer's frame, metres. */
 type ProfilePoint = readonly [along: number, height: number];
@@ -32,7 +33,7 @@ export function sectionOf(objects: readonly Object3D[], a: Vector3, b: Vector3):
   along.divideScalar(lengthM);
   const across = new Vector3(-along.z, 0, along.x);
   const pieces = objects
-    .flatMap(trianglesOf)
+    .flatMap(trianglesBelow)
     .map((corners) => cut(corners, a, along, across))
     .filter((piece) => piece !== null)
     .map((piece) => clipped(piece, lengthM))
@@ -52,26 +53,18 @@ export function clippingPlane(a: Vector3, b: Vector3, eye: Vector3): Plane {
   return plane;
 }
 
-type Corners = readonly [Vector3, Vector3, Vector3];
+type Corners = ReturnType<typeof trianglesOf>[number];
 
 /** The triangles of all meshes below an object, in the viewer's frame. */
-function trianglesOf(object: Object3D): Corners[] {
+function trianglesBelow(object: Object3D): Corners[] {
   const found: Corners[] = [];
   object.updateWorldMatrix(true, true);
   object.traverse((child) => {
     // Lines of constant width are meshes, too.
-    if (!(child instanceof Mesh) || child instanceof LineSegments2) {
-      return;
-    }
-    const geometry = child.geometry as BufferGeometry;
-    const positions = geometry.getAttribute("position");
-    const count = geometry.index?.count ?? positions.count;
-    const corner = (i: number) =>
-      new Vector3()
-        .fromBufferAttribute(positions, geometry.index?.getX(i) ?? i)
-        .applyMatrix4(child.matrixWorld);
-    for (let i = 0; i + 2 < count; i += 3) {
-      found.push([corner(i), corner(i + 1), corner(i + 2)]);
+    if (child instanceof Mesh && !(child instanceof LineSegments2)) {
+      const own = trianglesOf(child.geometry);
+      own.flat().forEach((corner) => void corner.applyMatrix4(child.matrixWorld));
+      found.push(...own);
     }
   });
   return found;

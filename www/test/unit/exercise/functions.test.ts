@@ -44,8 +44,9 @@ describe.each(EXERCISES.map((exercise) => [exercise.name, exercise] as const))("
     expect(verdict.kind).not.toBe("right");
   });
 
-  const variants = exercise.mistakes.flatMap((mistake) =>
-    mistake.variants.map((variant, i) => [mistake.name, i, variant as Solver] as const),
+  const mistakes = Object.entries(exercise.mistakes);
+  const variants = mistakes.flatMap(([mistake, { variants: all }]) =>
+    all.map((variant, i) => [mistake, i, variant as Solver] as const),
   );
 
   it.each(variants)("knows '%s' (%i), and takes no other mistake for it", (mistake, _, variant) => {
@@ -57,10 +58,10 @@ describe.each(EXERCISES.map((exercise) => [exercise.name, exercise] as const))("
     }
     const planted = plantedOf(exercise, 9);
     const answers = planted.map(({ input }) => variant(...input));
-    const taken = exercise.mistakes.filter(({ variants: all }) =>
+    const taken = mistakes.filter(([, { variants: all }]) =>
       all.some((one: Solver) => planted.every(({ input }, i) => exercise.isSame(one(...input), answers[i]))),
     );
-    expect(taken.map((one) => one.name)).toEqual([mistake]);
+    expect(taken.map(([name]) => name)).toEqual([mistake]);
   });
 
   it("says what is wrong with the form of an answer", () => {
@@ -72,10 +73,8 @@ describe.each(EXERCISES.map((exercise) => [exercise.name, exercise] as const))("
     }
   });
 
-  it("explains each mistake, and each once", () => {
-    const names = exercise.mistakes.map((one) => one.name);
-    expect(new Set(names).size).toBe(names.length);
-    for (const { says } of exercise.mistakes) {
+  it("explains each mistake", () => {
+    for (const [, { says }] of mistakes) {
       expect(says.length).toBeGreaterThan(40);
     }
   });

@@ -126,7 +126,8 @@ describe("the ten lessons", () => {
           expect(predict.options[predict.right()], `${id}/${screen}`).toBeDefined();
         }
         if (predict?.kind === "estimate") {
-          const { truth, min, max, within } = predict;
+          const { truth, within } = predict;
+          const [min, max] = predict.range;
           expect(truth(), `${id}/${screen}`).toBeGreaterThan(min);
           expect(truth(), `${id}/${screen}`).toBeLessThan(max);
           // The slider's first place must not be the answer.

@@ -65,5 +65,7 @@ it("surrounds the line at the enlarged distance, and knows which line it is", ()
     expect(Math.hypot(positions.getY(i), positions.getZ(i))).toBeCloseTo(0.2);
     expect(positions.getZ(i + 48)).toBeCloseTo(8);
   }
-  expect(layer.pick({ faceIndex: 33 } as import("three").Intersection)).toEqual({ kind: "line", index: 1 });
+  expect(
+    layer.pick({ object: layer.object.children[0], faceIndex: 33 } as import("three").Intersection),
+  ).toEqual({ kind: "line", index: 1 });
 });
