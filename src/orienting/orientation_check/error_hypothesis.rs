@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use super::view::CheckedView;
 use crate::base::math;
 use crate::orienting::orientation::{
-    AngleUnit, Crop, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa,
+    AngleUnit, Crop, Y_UP, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa,
 };
 use crate::photographs::camera::Camera;
 
@@ -162,7 +162,7 @@ impl ErrorHypothesis {
                 camera.center = Point3::from(t - view.origin);
             }
             Self::CameraYUp => {
-                camera.r = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * camera.r;
+                camera.r = Y_UP * camera.r;
             }
             Self::PrincipalPointFromBottom => camera.k[(1, 2)] = height - camera.k[(1, 2)],
             Self::PrincipalPointInMiddle => {

@@ -105,13 +105,13 @@ fn load_planned(plan: Plan, files: &[InputFile], options: &LoadOptions) -> Resul
 }
 
 fn cut_before(unit: &str) -> Error {
-    Error::Scene {
-        problem: format!(
+    Error::scene(
+        format!(
             "the images show that the angles are in {unit}, but the region of interest was cut \
              before, for want of memory"
         ),
-        advice: format!("state the unit in the list (\"# angles in {unit}\")"),
-    }
+        format!("state the unit in the list (\"# angles in {unit}\")"),
+    )
 }
 
 /// Adds the region of interest and what is known of it.

@@ -121,19 +121,19 @@ fn unread<'a>(
 
 fn refusal(format: &UnreadImageFormat, names: &[&str]) -> Error {
     match names {
-        [one] => Error::File {
-            file: (*one).to_owned(),
-            problem: format!("it is {}, which is not read", format.name),
-            advice: format.advice.to_owned(),
-        },
-        _ => Error::Scene {
-            problem: format!(
+        [one] => Error::file(
+            *one,
+            format!("it is {}, which is not read", format.name),
+            format.advice,
+        ),
+        _ => Error::scene(
+            format!(
                 "{} files are not read, each {}: {}",
                 names.len(),
                 format.name,
                 listed(names.iter())
             ),
-            advice: format.advice.replace("convert it", "convert each"),
-        },
+            format.advice.replace("convert it", "convert each"),
+        ),
     }
 }

@@ -73,13 +73,7 @@ pub(crate) fn check_cameras(cameras: &[(&str, &Camera)], ground_z: Option<f64>) 
 
 /// Is the camera above the ground, looking down?
 fn placement_error(name: &str, camera: &Camera, ground_z: Option<f64>) -> Option<Error> {
-    let refuse = |problem: String, advice: &str| {
-        Some(Error::File {
-            file: name.to_owned(),
-            problem,
-            advice: advice.to_owned(),
-        })
-    };
+    let refuse = |problem: String, advice: &str| Some(Error::file(name, problem, advice));
     let z = camera.center.z;
     if z.abs() > MAP_COORDINATE_M {
         return refuse(
@@ -125,15 +119,11 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
             Some(z) => format!("at the ground height {z:.1} m"),
             None => "at any height of the ground".to_owned(),
         };
-        found.errors.push(Error::Scene {
-            problem: format!(
-                "the views do not overlap: no three of them see the same place {place}"
-            ),
-            advice:
-                "check that images and orientations belong together (names, unit and order of the \
-                     angles, the same coordinate system)"
-                    .to_owned(),
-        });
+        found.errors.push(Error::scene(
+            format!("the views do not overlap: no three of them see the same place {place}"),
+            "check that images and orientations belong together (names, unit and order of the \
+                     angles, the same coordinate system)",
+        ));
     } else if alone().next().is_some() {
         found.warnings.push(format!(
             "views that see no place together with two others: {}",

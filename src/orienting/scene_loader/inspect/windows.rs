@@ -69,9 +69,11 @@ impl ShownArea {
             return Err(error.clone());
         }
         let shown = ground.and_then(|heights| Self::of_plan(&plan, heights));
-        shown.ok_or_else(|| Error::Scene {
-            problem: "the cameras do not tell which area three of them show".to_owned(),
-            advice: "give the region of interest (--roi x0,y0,x1,y1)".to_owned(),
+        shown.ok_or_else(|| {
+            Error::scene(
+                "the cameras do not tell which area three of them show",
+                "give the region of interest (--roi x0,y0,x1,y1)",
+            )
         })
     }
 

@@ -125,19 +125,18 @@ fn ambiguous(same: &Ambiguity, orientations: &[Orientation], paths: &[&str]) -> 
     let images: Vec<&str> = same.images.iter().map(|&i| paths[i]).collect();
     let sources = listed((same.orientations.iter()).map(|&i| &*orientations[i].source));
     match images[..] {
-        [one] => Error::File {
-            file: one.to_owned(),
-            problem: format!("two orientations are called like the image ({sources})"),
-            advice: "remove one of them".to_owned(),
-        },
-        _ => Error::Scene {
-            problem: format!(
+        [one] => Error::file(
+            one,
+            format!("two orientations are called like the image ({sources})"),
+            "remove one of them",
+        ),
+        _ => Error::scene(
+            format!(
                 "{} have the same name, and nothing tells which of them belongs to {sources}",
                 images.join(" and ")
             ),
-            advice: "rename or remove one, or give them the folders that the orientation states"
-                .to_owned(),
-        },
+            "rename or remove one, or give them the folders that the orientation states",
+        ),
     }
 }
 
@@ -147,8 +146,8 @@ fn too_few_oriented(oriented: usize, without: &[&str], unused: &[&str], label: &
         true => String::new(),
         false => format!(" (it names {})", listed(unused.iter())),
     };
-    Error::Scene {
-        problem: format!(
+    Error::scene(
+        format!(
             "{oriented} {} an orientation in {label}, but three are needed: none for {}{named}",
             if oriented == 1 {
                 "image has"
@@ -157,7 +156,6 @@ fn too_few_oriented(oriented: usize, without: &[&str], unused: &[&str], label: &
             },
             listed(without.iter())
         ),
-        advice: "add the orientation of the others, or give the images the names that it states"
-            .to_owned(),
-    }
+        "add the orientation of the others, or give the images the names that it states",
+    )
 }

@@ -110,13 +110,13 @@ impl Plan {
             images = self.select(files, &images, wanted);
         }
         if images.is_empty() && self.errors.is_empty() {
-            self.errors.push(Error::Scene {
-                problem: match files.len() {
+            self.errors.push(Error::scene(
+                match files.len() {
                     1 => "the one file that was given is no image".to_owned(),
                     count => format!("there is no image among the {count} files"),
                 },
-                advice: "add three or more JPEG, PNG or TIFF images".to_owned(),
-            });
+                "add three or more JPEG, PNG or TIFF images",
+            ));
         }
         let headers = crate::base::execution::map(&images, |_, &i| {
             image_header(&files[i].path, files[i].content())
@@ -143,13 +143,13 @@ impl Plan {
         for name in wanted {
             let called = images_called(name, &paths);
             if called.is_empty() {
-                self.errors.push(Error::Scene {
-                    problem: format!("there is no image called {name}"),
-                    advice: format!(
+                self.errors.push(Error::scene(
+                    format!("there is no image called {name}"),
+                    format!(
                         "choose among {}",
                         listed(images.iter().map(|&i| files[i].name()))
                     ),
-                });
+                ));
             }
             chosen.extend(called);
         }
@@ -222,13 +222,13 @@ impl Plan {
         let is_degrees = stated.is_some_and(is_geographic);
         let Some(anchor) = to_metric_frame(orientations, is_degrees) else {
             match stated {
-                Some(code) if is_degrees => self.errors.push(Error::Scene {
-                    problem: format!(
+                Some(code) if is_degrees => self.errors.push(Error::scene(
+                    format!(
                         "EPSG:{code} is longitude and latitude, and the positions of the cameras \
                          are none"
                     ),
-                    advice: "state the system that they are in (--crs EPSG:N)".to_owned(),
-                }),
+                    "state the system that they are in (--crs EPSG:N)",
+                )),
                 Some(code) => self.count_feet_in_metres(code, orientations),
                 None => {}
             }
@@ -261,15 +261,14 @@ impl Plan {
             plane_of(code)
         };
         if linear_unit_of_code(metric).is_none_or(|unit| !unit.is_metre()) {
-            self.errors.push(Error::Scene {
-                problem: format!(
+            self.errors.push(Error::scene(
+                format!(
                     "EPSG:{code} is in {}, and no other code has the same plane in metres",
                     unit.words()
                 ),
-                advice: "convert the orientation to a system in metres, or multiply its positions \
-                         by the metres of the unit and leave the system unstated"
-                    .to_owned(),
-            });
+                "convert the orientation to a system in metres, or multiply its positions \
+                         by the metres of the unit and leave the system unstated",
+            ));
             return;
         }
         for orientation in orientations.iter_mut() {
@@ -381,17 +380,15 @@ impl Plan {
             return;
         };
         if !unit.is_metre() && self.errors.is_empty() {
-            self.errors.push(Error::File {
-                file: file.path.clone(),
-                problem: format!(
+            self.errors.push(Error::file(
+                &file.path,
+                format!(
                     "it states coordinates in {}, of a system without a code",
                     unit.words()
                 ),
-                advice:
-                    "state the system of the orientation (--crs EPSG:N), or leave the file out \
-                         (--without) if it is of something else"
-                        .to_owned(),
-            });
+                "state the system of the orientation (--crs EPSG:N), or leave the file out \
+                         (--without) if it is of something else",
+            ));
         }
     }
 
@@ -427,13 +424,13 @@ fn no_orientation(
     incomplete: &[String],
 ) -> Error {
     if let (Some(wanted), false) = (&options.orientation, sets.is_empty()) {
-        return Error::Scene {
-            problem: format!("no orientation file has {wanted} in its path"),
-            advice: format!(
+        return Error::scene(
+            format!("no orientation file has {wanted} in its path"),
+            format!(
                 "choose among {}",
                 listed(sets.iter().map(|s| s.label(files)))
             ),
-        };
+        );
     }
     let mut problem = "no orientation was found".to_owned();
     let unread: Vec<(&InputFile, &UnreadFormat)> = (files.iter().zip(kinds))
@@ -456,20 +453,16 @@ fn no_orientation(
         problem = format!("{problem}: {}", reasons.join("; "));
     }
     if let (Some((_, format)), true) = (unread.first(), incomplete.is_empty()) {
-        return Error::Scene {
-            problem,
-            advice: format.advice.to_owned(),
-        };
+        return Error::scene(problem, format.advice);
     }
     if reasons.is_empty() {
         problem.push_str(" (a position in the header of a photograph does not orient it)");
     }
-    Error::Scene {
+    Error::scene(
         problem,
-        advice: "add the orientation as COLMAP, Metashape, BlocksExchange, Pix4D, OpenSfM or Bundler write it, a camera \
-                 file with a list `image X0 Y0 Z0 omega phi kappa`, or one 3 x 4 matrix NAME.P an image"
-            .to_owned(),
-    }
+        "add the orientation as COLMAP, Metashape, BlocksExchange, Pix4D, OpenSfM or Bundler write it, a camera \
+                 file with a list `image X0 Y0 Z0 omega phi kappa`, or one 3 x 4 matrix NAME.P an image",
+    )
 }
 
 /// A mask, perhaps: a photograph in grey values alone is rarely a PNG.

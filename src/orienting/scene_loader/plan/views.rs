@@ -156,14 +156,13 @@ fn notice_of_reduction(options: &LoadOptions) -> Option<String> {
 }
 
 fn too_few(files: &[InputFile], views: &[PlannedView]) -> Error {
-    Error::Scene {
-        problem: format!(
+    Error::scene(
+        format!(
             "{} oriented {} ({}), but three are needed",
             views.len(),
             if views.len() == 1 { "view" } else { "views" },
             listed(views.iter().map(|v| files[v.file].name()))
         ),
-        advice: "add images with their orientation: what two show alike is true only if a third shows it too"
-            .to_owned(),
-    }
+        "add images with their orientation: what two show alike is true only if a third shows it too",
+    )
 }

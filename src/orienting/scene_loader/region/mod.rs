@@ -51,10 +51,10 @@ impl RegionOfInterest {
     pub(crate) fn new(roi: [f64; 4], origin: &Vector3<f64>, heights: [f64; 2]) -> Result<Self> {
         let [x0, y0, x1, y1] = roi;
         if !(roi.iter().all(|v| v.is_finite()) && x0 < x1 && y0 < y1) {
-            return Err(Error::Scene {
-                problem: format!("the region of interest {x0},{y0},{x1},{y1} is empty"),
-                advice: "give x0,y0,x1,y1 in metres with x0 < x1 and y0 < y1".to_owned(),
-            });
+            return Err(Error::scene(
+                format!("the region of interest {x0},{y0},{x1},{y1} is empty"),
+                "give x0,y0,x1,y1 in metres with x0 < x1 and y0 < y1",
+            ));
         }
         Ok(Self {
             low: Point3::new(x0 - origin.x, y0 - origin.y, heights[0]),
@@ -238,8 +238,8 @@ impl RegionOfInterest {
             0.5 * (self.low.y + self.high.y),
         ];
         let off = [0, 1].map(|i| middle[i] - 0.5 * (low[i] + high[i]));
-        Error::Scene {
-            problem: format!(
+        Error::scene(
+            format!(
                 "the region of interest is seen by {count} views, but three are needed; its middle lies {:.0} m east and {:.0} m north of \
                  that of the {:.0} x {:.0} m that the views see",
                 off[0],
@@ -247,8 +247,8 @@ impl RegionOfInterest {
                 high[0] - low[0],
                 high[1] - low[1]
             ),
-            advice: "give it as x0,y0,x1,y1 in metres of the orientation's coordinates".to_owned(),
-        }
+            "give it as x0,y0,x1,y1 in metres of the orientation's coordinates",
+        )
     }
 }
 

@@ -38,10 +38,7 @@ pub(super) fn not_joined(
 }
 
 pub(super) fn refusal(problem: String, advice: &str) -> Error {
-    Error::Scene {
-        problem,
-        advice: advice.to_owned(),
-    }
+    Error::scene(problem, advice)
 }
 
 pub(super) fn too_few(left_out: &[LeftOut]) -> Error {

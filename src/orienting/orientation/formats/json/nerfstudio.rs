@@ -5,11 +5,12 @@
 //! Intrinsics are stated once or per frame; NeRF's and Blender's form states one angle alone and
 //! leaves the size to the images.
 
-use nalgebra::{Matrix3, Matrix4, Point3, Vector3};
+use nalgebra::{Matrix3, Matrix4, Point3};
 use serde::Deserialize;
 
 use super::{parse, refuse};
 use crate::base::error::{Error, Result};
+use crate::orienting::orientation::angles::Y_UP;
 use crate::orienting::orientation::formats::left_out::LeftOut;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 use crate::photographs::camera::{Distortion, Projection};
@@ -53,8 +54,7 @@ pub(crate) fn read(
         }
         let pose = undo * pose;
         let turned = pose.fixed_view::<3, 3>(0, 0).into_owned();
-        let axes = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
-        let r = axes * (turned / turned.column(0).norm()).transpose();
+        let r = Y_UP * (turned / turned.column(0).norm()).transpose();
         let center = Point3::new(pose[(0, 3)], pose[(1, 3)], pose[(2, 3)]);
         found.push(Orientation {
             distortion: lens.distortion(),
@@ -188,26 +188,23 @@ impl NerfstudioCamera {
 }
 
 fn unsupported_model(path: &str, image: &str, model: &str) -> Error {
-    refuse(
-        path,
-        &format!("{image} has the camera model \"{model}\", which is not read"),
-    )
+    let problem = format!("{image} has the camera model \"{model}\", which is not read");
+    refuse(path, &problem)
 }
 
 /// Three rows or four of a 4 x 4 matrix; what is missing is that of the identity.
 fn homogeneous(rows: &[[f64; 4]]) -> Matrix4<f64> {
     let identity = Matrix4::identity();
-    Matrix4::from_fn(|i, j| {
-        if i < 3 {
-            rows.get(i).map_or(f64::NAN, |r| r[j])
-        } else {
-            identity[(i, j)]
-        }
+    Matrix4::from_fn(|i, j| match i {
+        3 => identity[(i, j)],
+        _ => rows.get(i).map_or(f64::NAN, |row| row[j]),
     })
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::*;
     use crate::base::math;
 
