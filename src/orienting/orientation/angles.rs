@@ -69,13 +69,18 @@ pub fn rotation_from_omega_phi_kappa(omega: f64, phi: f64, kappa: f64) -> Rotati
 ///
 /// In axes east, north, up that is `Rz(-yaw) Rx(pitch) Ry(roll)` from the image to the world.
 pub fn rotation_from_yaw_pitch_roll(yaw: f64, pitch: f64, roll: f64) -> Rotation3<f64> {
-    let (sy, cy) = math::sin_cos(yaw);
-    let (sp, cp) = math::sin_cos(pitch);
-    let (sr, cr) = math::sin_cos(roll);
-    let rz = Matrix3::new(cy, sy, 0.0, -sy, cy, 0.0, 0.0, 0.0, 1.0);
-    let rx = Matrix3::new(1.0, 0.0, 0.0, 0.0, cp, -sp, 0.0, sp, cp);
-    let ry = Matrix3::new(cr, 0.0, sr, 0.0, 1.0, 0.0, -sr, 0.0, cr);
+    let [rx, ry, rz] = axis_rotations([pitch, roll, -yaw]);
     Rotation3::from_matrix_unchecked(Y_UP * (rz * rx * ry).transpose())
+}
+
+/// Rotations about the axes x, y and z by these angles, radians.
+pub(crate) fn axis_rotations(angles: [f64; 3]) -> [Matrix3<f64>; 3] {
+    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(math::sin_cos);
+    [
+        Matrix3::new(1.0, 0.0, 0.0, 0.0, cx, -sx, 0.0, sx, cx),
+        Matrix3::new(cy, 0.0, sy, 0.0, 1.0, 0.0, -sy, 0.0, cy),
+        Matrix3::new(cz, -sz, 0.0, sz, cz, 0.0, 0.0, 0.0, 1.0),
+    ]
 }
 
 /// The rotation next to a matrix whose elements were rounded (six digits are usual, four occur);

@@ -18,7 +18,7 @@ use crate::planes::terrain::Ground;
 const LEAST_LENGTH: f64 = 3.0;
 /// Sine of the least slope that is propagated (6 degrees); level planes need no line that runs
 /// along them.
-const LEAST_SLOPE_SINE: f64 = 0.1;
+pub(crate) const LEAST_SLOPE_SINE: f64 = 0.1;
 /// Sine of the angle (3 degrees) to the horizontal, and to the neighbour's level direction, below
 /// which a line runs along it.
 const ALONG_SINE: f64 = 0.055;

@@ -6,6 +6,7 @@ use crate::orienting::orientation::{InputFile, Orientation};
 use crate::orienting::scene_loader::assignment::{
     Ambiguity, Assignment, LeftOut, assign, assign_in_order,
 };
+use crate::photographs::camera::FEWEST_VIEWS;
 
 impl Plan {
     /// Gives each image its orientation; what is left over is named.
@@ -41,7 +42,7 @@ impl Plan {
         let unclear = found.ambiguous.iter();
         errors.extend(unclear.map(|same| ambiguous(same, &orientations, &paths)));
         let left = LeftOver::of(&found, &orientations, &paths);
-        if left.oriented < 3 && errors.is_empty() && !left.images.is_empty() {
+        if left.oriented < FEWEST_VIEWS && errors.is_empty() && !left.images.is_empty() {
             errors.push(too_few_oriented(
                 left.oriented,
                 &left.images,

@@ -32,7 +32,7 @@ pub(super) fn without_heights(stated: &[StatedPose]) -> Vec<StatedPose> {
     lacking.collect()
 }
 
-pub(super) fn centers(block: &Block) -> Vec<Point3<f64>> {
+pub(in super::super) fn centers(block: &Block) -> Vec<Point3<f64>> {
     let poses = block.photos.iter().filter_map(|p| p.pose.as_ref());
     poses.map(|pose| pose.center).collect()
 }
