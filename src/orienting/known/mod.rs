@@ -231,10 +231,8 @@ impl Register {
                  becomes GeoJSON with ogr2ogr",
             )
         };
-        if !file
-            .start_as_text(1024)
-            .is_some_and(|text| json_lines::begins(&text))
-        {
+        let start = file.start_as_text(1024);
+        if !start.is_some_and(|text| json_lines::begins(&text)) {
             return Err(none());
         }
         let json = json_lines::read(file)?;
@@ -247,11 +245,8 @@ impl Register {
         };
         if outlines.is_empty() {
             let problem = "it holds no polygons of buildings";
-            return Err(Error::file(
-                &file.path,
-                problem,
-                "give polygons, not lines or points",
-            ));
+            let advice = "give polygons, not lines or points";
+            return Err(Error::file(&file.path, problem, advice));
         }
         let mut footprints = Vec::new();
         for outline in outlines {

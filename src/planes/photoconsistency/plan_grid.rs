@@ -47,8 +47,9 @@ impl PlanGrid {
         }
     }
 
-    /// The same place in samples of what is known: quarters of a metre, and four millions at most.
+    /// The same place in the samples in which what is known is laid over a plan.
     pub(crate) fn in_samples(&self) -> Self {
+        // Finest sample, metres, and most samples.
         const SAMPLE_M: f64 = 0.25;
         const MOST_SAMPLES: f64 = 4e6;
         let size = Vector2::new(self.width as f64, self.height as f64) * self.step;
