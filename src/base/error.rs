@@ -48,6 +48,42 @@ pub enum Error {
 }
 
 impl Error {
+    /// A line of a text file does not follow the format; its number is from 1.
+    pub fn line(
+        file: impl Into<String>,
+        line: usize,
+        problem: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Self {
+        Self::Line {
+            file: file.into(),
+            line,
+            problem: problem.into(),
+            expected: expected.into(),
+        }
+    }
+
+    /// A file as a whole cannot be used.
+    pub fn file(
+        file: impl Into<String>,
+        problem: impl Into<String>,
+        advice: impl Into<String>,
+    ) -> Self {
+        Self::File {
+            file: file.into(),
+            problem: problem.into(),
+            advice: advice.into(),
+        }
+    }
+
+    /// The files do not make a scene.
+    pub fn scene(problem: impl Into<String>, advice: impl Into<String>) -> Self {
+        Self::Scene {
+            problem: problem.into(),
+            advice: advice.into(),
+        }
+    }
+
     /// The kind of refusal, for programs.
     pub fn code(&self) -> &'static str {
         match self {

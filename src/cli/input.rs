@@ -195,10 +195,10 @@ fn leave_out(files: &mut Vec<InputFile>, patterns: &[String]) -> ridgeline::Resu
             !is_named && !file.path.starts_with(&folder)
         });
         if files.len() == before {
-            return Err(ridgeline::Error::Scene {
-                problem: format!("--without {pattern} names none of the files"),
-                advice: "give a path in the scene, a name, or a pattern with * and ?".to_owned(),
-            });
+            return Err(ridgeline::Error::scene(
+                format!("--without {pattern} names none of the files"),
+                "give a path in the scene, a name, or a pattern with * and ?",
+            ));
         }
     }
     Ok(())

@@ -107,11 +107,10 @@ fn orient_first(
     make_folder(&beside)?;
     files::write_all(&beside, &written)?;
     if !oriented.report.is_metric {
-        let found = ridgeline::Error::Scene {
-            problem: "the photographs are oriented, but nothing tells their scale".to_owned(),
-            advice: "add ground control points (gcp_list.txt), or photographs with positions"
-                .to_owned(),
-        };
+        let found = ridgeline::Error::scene(
+            "the photographs are oriented, but nothing tells their scale",
+            "add ground control points (gcp_list.txt), or photographs with positions",
+        );
         return Err(refusal(&found, seen));
     }
     let added = written.into_iter();
@@ -185,13 +184,11 @@ fn reconstruct_whole(
 
 /// The refusal to write an empty model of images that hardly agree with their orientation.
 fn shows_nothing() -> ridgeline::Error {
-    ridgeline::Error::Scene {
-        problem: "the images hardly agree with their orientation, and show no roof with it"
-            .to_owned(),
-        advice: "check that images and orientation belong together (names, folders, the same \
-                 flight), or have the empty model written nevertheless (--ignore-check)"
-            .to_owned(),
-    }
+    ridgeline::Error::scene(
+        "the images hardly agree with their orientation, and show no roof with it",
+        "check that images and orientation belong together (names, folders, the same \
+                 flight), or have the empty model written nevertheless (--ignore-check)",
+    )
 }
 
 /// Do the images hardly agree with the orientation, though no mistake explains it?

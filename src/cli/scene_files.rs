@@ -116,10 +116,9 @@ fn read_ranges(path: &Path, ranges: &[Range<u64>]) -> io::Result<Vec<u8>> {
 
 /// The refusal of a photograph that was there when the scene was read.
 fn gone(file: &InputFile, problem: &str) -> ridgeline::Error {
-    ridgeline::Error::File {
-        file: file.path.clone(),
-        problem: format!("the photograph can no longer be read: {problem}"),
-        advice: "leave the files of a scene as they are while it is read, and start again"
-            .to_owned(),
-    }
+    ridgeline::Error::file(
+        &file.path,
+        format!("the photograph can no longer be read: {problem}"),
+        "leave the files of a scene as they are while it is read, and start again",
+    )
 }

@@ -9,8 +9,7 @@ use super::{Run, Stage};
 use crate::base::execution::{Listener, progress};
 use crate::base::execution::{MergedShards, Origin, ShardTask, run_shard};
 use crate::base::params::Params;
-use crate::orienting::known::Known;
-use crate::orienting::scene::{Scene, Survey, View};
+use crate::orienting::scene::{Scene, View};
 use crate::photographs::camera::Camera;
 use crate::photographs::raster::Gray;
 
@@ -74,12 +73,9 @@ impl Run {
             origin: first.map(|v| v.origin).unwrap_or_default(),
             ground_z: first.and_then(|v| v.ground_z),
             views: views.into_iter().map(PackedView::unpack).collect(),
-            // Lines outside are left out by the instance that runs the stage, before any shard.
-            region: None,
-            // What is known is weighed there too.
-            known: Known::default(),
-            warnings: Vec::new(),
-            survey: Survey::default(),
+            // Lines outside of the region are left out by the instance that runs the stage, before
+            // any shard, and what is known is weighed there too.
+            ..Scene::default()
         };
         Self::new(scene, params)
     }

@@ -75,12 +75,7 @@ fn of_cameras(cameras: impl IntoIterator<Item = Camera>, surfaces: &[TexturedPla
     };
     Scene {
         views: cameras.into_iter().enumerate().map(view).collect(),
-        origin: Vector3::zeros(),
-        ground_z: None,
-        region: None,
-        known: crate::orienting::known::Known::default(),
-        warnings: Vec::new(),
-        survey: crate::orienting::scene::Survey::default(),
+        ..Scene::default()
     }
 }
 

@@ -90,11 +90,10 @@ impl Area {
     ) -> Result<Self> {
         refuse_corrections(params)?;
         if options.apply_fix {
-            return Err(Error::Scene {
-                problem: "tiles take the orientation as it is".to_owned(),
-                advice: "correct the orientation file, or work off all at once (without --tile)"
-                    .to_owned(),
-            });
+            return Err(Error::scene(
+                "tiles take the orientation as it is",
+                "correct the orientation file, or work off all at once (without --tile)",
+            ));
         }
         let stated = options.ground_z.map(|z| [z, z]);
         let mut heights = stated.or(ground);
@@ -326,11 +325,10 @@ fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params) -> u32 {
 pub fn refuse_corrections(params: &Params) -> Result<()> {
     match params.corrections.is_empty() {
         true => Ok(()),
-        false => Err(Error::Scene {
-            problem: "corrections by hand do not go with tiles".to_owned(),
-            advice: "reconstruct the part that they are about by itself (--roi), or leave them out"
-                .to_owned(),
-        }),
+        false => Err(Error::scene(
+            "corrections by hand do not go with tiles",
+            "reconstruct the part that they are about by itself (--roi), or leave them out",
+        )),
     }
 }
 

@@ -101,10 +101,10 @@ impl FlightPlan {
         let divided = match (options.roi, flight.shown()) {
             (Some(roi), _) => Division::of_region(roi, tile_m),
             (None, Some(shown)) => Division::of_shown(shown, tile_m),
-            (None, None) => Err(Error::Scene {
-                problem: "no place is shown by three photographs".to_owned(),
-                advice: "state the region, and the height of the ground".to_owned(),
-            }),
+            (None, None) => Err(Error::scene(
+                "no place is shown by three photographs",
+                "state the region, and the height of the ground",
+            )),
         };
         let count = divided.as_ref().map_or(0, |divided| divided.tiles.len());
         let (tiles, left_out, problem) = match divided {

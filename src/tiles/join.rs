@@ -429,7 +429,6 @@ fn join_buildings(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::orienting::scene::Survey;
     use crate::results::texture::FaceTexture;
     use crate::roofs::model::check_invariants;
     use crate::tiles::fixture::house;
@@ -485,17 +484,8 @@ mod tests {
             [100.0, 0.0, 5.0],
             &[[60.2, 25.0], [80.0, 20.0]],
         );
-        let scene = Scene {
-            views: Vec::new(),
-            origin: Vector3::zeros(),
-            ground_z: None,
-            region: None,
-            known: crate::orienting::known::Known::default(),
-            warnings: Vec::new(),
-            survey: Survey::default(),
-        };
         let parts = [west, east];
-        let joined = join(scene, &parts);
+        let joined = join(Scene::default(), &parts);
         assert_eq!(joined.model.buildings.len(), 3);
         for (building, walls) in joined.model.buildings.iter().zip(&joined.walls) {
             assert_eq!(walls.solid.as_ref(), Some(&building.solid));

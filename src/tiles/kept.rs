@@ -66,9 +66,11 @@ impl Area {
     pub fn take(&mut self, kept: &[u8]) -> Result<()> {
         let TileOutcome { report, parts } = self.key(self.reports.len()).unpack(kept)?;
         if report.is_left_out {
-            self.first_error.get_or_insert_with(|| Error::Scene {
-                problem: format!("no tile could be read; the first one: {}", report.outcome),
-                advice: "choose another region, other views or another orientation".to_owned(),
+            self.first_error.get_or_insert_with(|| {
+                Error::scene(
+                    format!("no tile could be read; the first one: {}", report.outcome),
+                    "choose another region, other views or another orientation",
+                )
             });
         }
         self.parts.extend(parts);

@@ -281,9 +281,11 @@ impl Sightings {
 
     /// From [`Self::to_bytes`].
     pub(super) fn of_bytes(bytes: &[u8]) -> Result<Self> {
-        postcard::from_bytes(bytes).map_err(|error| Error::Scene {
-            problem: format!("what a first look showed cannot be read: {error}"),
-            advice: "look again".to_owned(),
+        postcard::from_bytes(bytes).map_err(|error| {
+            Error::scene(
+                format!("what a first look showed cannot be read: {error}"),
+                "look again",
+            )
         })
     }
 

@@ -1,19 +1,15 @@
 //! Parts of roof models: some buildings of one, appended to another, in another frame.
 
-use nalgebra::{Point2, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 
+use crate::base::geometry::bounds;
 use crate::base::ids::{BuildingId, FacetId};
 use crate::roofs::model::{Building, BuildingWalls, RoofModel, Solid, Surface};
 
 /// The middle of a building's box in plan.
 pub(super) fn middle(building: &Building) -> Point2<f64> {
-    let mut low = [f64::INFINITY; 2];
-    let mut high = [f64::NEG_INFINITY; 2];
-    for p in &building.solid.vertices {
-        low = [low[0].min(p.x), low[1].min(p.y)];
-        high = [high[0].max(p.x), high[1].max(p.y)];
-    }
-    Point2::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
+    let [low, high] = bounds(building.solid.vertices.iter().map(Point3::xy));
+    nalgebra::center(&low, &high)
 }
 
 /// Some buildings of a model, with their facets; ids follow the new order.

@@ -66,13 +66,15 @@ impl PartKey {
 
     /// Reads a part; refuses one that is not whole, or of something else.
     pub(super) fn unpack(self, bytes: &[u8]) -> Result<TileOutcome> {
-        let refuse = |problem: &str| Error::File {
-            file: self.path(),
-            problem: problem.to_owned(),
-            advice: format!(
-                "remove it and make it again (ridgeline tile PLAN {})",
-                self.tile
-            ),
+        let refuse = |problem: &str| {
+            Error::file(
+                self.path(),
+                problem,
+                format!(
+                    "remove it and make it again (ridgeline tile PLAN {})",
+                    self.tile
+                ),
+            )
         };
         let begins = &bytes[..bytes.len().min(MAGIC.len())];
         if !MAGIC.starts_with(begins) {

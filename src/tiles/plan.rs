@@ -141,12 +141,11 @@ impl InputStamp {
     }
 
     fn refuse(&self, problem: &str) -> Error {
-        Error::File {
-            file: self.file.clone(),
-            problem: problem.to_owned(),
-            advice: "put back what the plan was made from, or plan again (ridgeline plan)"
-                .to_owned(),
-        }
+        Error::file(
+            &self.file,
+            problem,
+            "put back what the plan was made from, or plan again (ridgeline plan)",
+        )
     }
 
     fn refuse_changed(&self) -> Error {
@@ -249,22 +248,17 @@ impl BlockPlan {
         // last bit.
         match Self::from_json(&text) {
             Ok(back) if back == *self => Ok(text),
-            _ => Err(Error::Scene {
-                problem: "the plan does not come back from its file as it was".to_owned(),
-                advice: "round the numbers of the region of interest and of the parameters to \
-                         fifteen digits"
-                    .to_owned(),
-            }),
+            _ => Err(Error::scene(
+                "the plan does not come back from its file as it was",
+                "round the numbers of the region of interest and of the parameters to \
+                         fifteen digits",
+            )),
         }
     }
 
     /// A plan from its file.
     pub fn from_json(text: &[u8]) -> Result<Self> {
-        let refuse = |problem: String, advice: &str| Error::File {
-            file: Self::FILE.to_owned(),
-            problem,
-            advice: advice.to_owned(),
-        };
+        let refuse = |problem: String, advice: &str| Error::file(Self::FILE, problem, advice);
         let plan: Self = serde_json::from_slice(text).map_err(|e| {
             refuse(
                 format!("the plan cannot be read: {e}"),
@@ -354,11 +348,10 @@ impl BlockPlan {
             parts.extend(outcome.parts);
         }
         if let (true, Some(first)) = (parts.is_empty(), reports.first()) {
-            return Err(Error::Scene {
-                problem: format!("no tile could be read; the first one: {}", first.outcome),
-                advice: "plan again with another region, other views or another orientation"
-                    .to_owned(),
-            });
+            return Err(Error::scene(
+                format!("no tile could be read; the first one: {}", first.outcome),
+                "plan again with another region, other views or another orientation",
+            ));
         }
         let joined = join_cells(whole, &mut parts);
         let found = (&self.sites[..], &reports[..]);
@@ -367,9 +360,11 @@ impl BlockPlan {
 
     fn planned(&self, tile: u32) -> Result<&PlannedTile> {
         let found = self.tiles.iter().find(|planned| planned.tile == tile);
-        found.ok_or_else(|| Error::Scene {
-            problem: format!("the plan has no tile {tile}"),
-            advice: format!("choose one from 1 to {}", self.tiles.len()),
+        found.ok_or_else(|| {
+            Error::scene(
+                format!("the plan has no tile {tile}"),
+                format!("choose one from 1 to {}", self.tiles.len()),
+            )
         })
     }
 
@@ -417,9 +412,9 @@ fn missing_parts(missing: &[u32], first: u32) -> Error {
     } else {
         "the parts are"
     };
-    Error::File {
-        file: names.join(", "),
-        problem: format!("{are} missing"),
-        advice: format!("make what is missing (ridgeline tile PLAN {first})"),
-    }
+    Error::file(
+        names.join(", "),
+        format!("{are} missing"),
+        format!("make what is missing (ridgeline tile PLAN {first})"),
+    )
 }

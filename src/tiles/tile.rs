@@ -63,15 +63,15 @@ pub fn plan_tiles(area: [f64; 4], tile_m: f64) -> Result<Vec<Tile>> {
         && sizes.iter().all(|&s| s > 0.0 && s.is_finite())
         && columns * rows <= MOST_CELLS)
     {
-        return Err(Error::Scene {
-            problem: format!(
+        return Err(Error::scene(
+            format!(
                 "{:.0} x {:.0} m cannot be divided into tiles of {tile_m} m",
                 sizes[0], sizes[1]
             ),
-            advice: format!(
+            format!(
                 "choose tiles of {CELL_M:.0} m or more, and an area of no more than {MOST_CELLS:.0} squares of {CELL_M:.0} m"
             ),
-        });
+        ));
     }
     let side = (tile_m / CELL_M).round() as usize;
     let (columns, rows) = (columns as usize, rows as usize);

@@ -26,6 +26,15 @@ pub fn mean_point<const D: usize>(points: &[Point<f64, D>]) -> Point<f64, D> {
     Point::from(sum / points.len() as f64)
 }
 
+/// Eigenvalues of a symmetric matrix in rising order, and the eigenvectors.
+pub(crate) fn principal_axes(matrix: Matrix3<f64>) -> ([f64; 3], [Vector3<f64>; 3]) {
+    let eigen = matrix.symmetric_eigen();
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    let axes = order.map(|i| eigen.eigenvectors.column(i).into_owned());
+    (order.map(|i| eigen.eigenvalues[i]), axes)
+}
+
 /// A finite, directed segment in an image, in pixels (x right, y down, centre of the top-left
 /// pixel at (0.5, 0.5)).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -230,14 +239,11 @@ impl Plane {
             let r = p.coords - mean;
             s + r * r.transpose() * *w
         });
-        let eigen = scatter.symmetric_eigen();
-        let mut order = [0, 1, 2];
-        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+        let ([_, second, largest], [normal, ..]) = principal_axes(scatter);
         // Collinear points leave the second axis without extent: no plane.
-        if eigen.eigenvalues[order[1]] <= 1e-9 * eigen.eigenvalues[order[2]] {
+        if second <= 1e-9 * largest {
             return None;
         }
-        let normal = eigen.eigenvectors.column(order[0]).into_owned();
         let plane = Self::from_point_normal(&Point3::from(mean), &normal)?;
         Some(plane.upwards())
     }

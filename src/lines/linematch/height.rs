@@ -168,7 +168,7 @@ fn sweep(scene: &Scene, images: &[Gray], view: ViewId, x: &Point2<f64>) -> Optio
 }
 
 /// The other views, nearest projection centre first.
-fn nearest_views(scene: &Scene, view: ViewId) -> Vec<ViewId> {
+pub(super) fn nearest_views(scene: &Scene, view: ViewId) -> Vec<ViewId> {
     let center = scene.camera(view).center;
     let distance = |v: &ViewId| (scene.camera(*v).center - center).norm();
     let mut others: Vec<ViewId> = scene.view_ids().filter(|v| *v != view).collect();

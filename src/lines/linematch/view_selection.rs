@@ -2,6 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 
+use super::height::nearest_views;
 use crate::base::ids::ViewId;
 use crate::base::math;
 use crate::base::params::MatchParams;
@@ -24,12 +25,8 @@ pub(super) fn select_view_pairs(
     let mut pairs = Vec::new();
     for view in scene.view_ids() {
         let center = scene.camera(view).center;
-        let distance = |v: &ViewId| (scene.camera(*v).center - center).norm();
-        let mut others: Vec<ViewId> = scene
-            .view_ids()
-            .filter(|v| *v != view && overlap(scene, view, *v, z) >= MIN_OVERLAP)
-            .collect();
-        others.sort_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+        let mut others = nearest_views(scene, view);
+        others.retain(|v| overlap(scene, view, *v, z) >= MIN_OVERLAP);
         let others = in_all_directions(others, params.max_partners, |v| {
             scene.camera(*v).center.xy() - center.xy()
         });

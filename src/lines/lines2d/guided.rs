@@ -19,6 +19,7 @@ use super::segment::SegmentKind;
 use crate::base::geometry::Segment2;
 use crate::base::ids::ViewId;
 use crate::base::least_squares::Loss;
+use crate::base::math::SURE_SIGMAS;
 use crate::photographs::raster::Gray;
 
 /// Shortest piece whose profile is averaged, px.
@@ -34,9 +35,6 @@ const BASE: usize = 2;
 const SAMPLES: usize = PROFILE_STEPS + 2 * BASE;
 /// Steps of the profile: three of the reach and a neighbour on either side, and the middle.
 const PROFILE_STEPS: usize = 2 * (3 + 1) + 1;
-/// Least response at the edge of a piece, in standard deviations of the piece's noise. Assumption:
-/// of some ten places that are looked at none is so high by chance.
-const EDGE_SIGMAS: f64 = 4.0;
 /// Offset from the robust line beyond which a piece does not belong to the edge, px.
 const INLIER_PX: f64 = 0.6;
 /// Scale of the robust loss, px.
@@ -158,7 +156,7 @@ fn measure_piece(
     kind.channel().to_linear_light(&mut light);
     let [response, light] = [profile, light].map(|p| response(&p, reversed_contrast));
     // The difference of two values has the square root of two times their noise.
-    let least = EDGE_SIGMAS * noise * std::f64::consts::SQRT_2 / (rows as f64).sqrt();
+    let least = SURE_SIGMAS * noise * std::f64::consts::SQRT_2 / (rows as f64).sqrt();
     Some(ProfilePiece {
         along,
         offset: nearest_edge(&response, least).and_then(|k| offset(&light, k)),

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
 use super::observation::Observation;
-use crate::base::geometry::{Plane, Segment3};
+use crate::base::geometry::{Plane, Segment3, principal_axes};
 use crate::photographs::camera::{Camera, plane_of_image_line};
 
 /// The line nearest to all interpretation planes in the least-squares sense: direction across all
@@ -23,14 +23,11 @@ pub fn line_of_planes(observations: &[Observation]) -> Option<Segment3> {
     let scatter = planes.iter().fold(Matrix3::zeros(), |s, (p, w)| {
         s + p.normal * p.normal.transpose() * *w
     });
-    let eigen = scatter.symmetric_eigen();
-    let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    let ([_, second, largest], [direction, ..]) = principal_axes(scatter);
     // Planes that are nearly one plane (all within about 0.1 degree) fix no line.
-    if eigen.eigenvalues[order[1]] < 3e-6 * eigen.eigenvalues[order[2]] {
+    if second < 3e-6 * largest {
         return None;
     }
-    let direction = eigen.eigenvectors.column(order[0]).into_owned();
     let origin = least_squares_point(&planes, &scatter, &direction, longest)?;
     let ends = [longest.segment.p0, longest.segment.p1]
         .map(|x| nearest_on_line(&origin, &direction, longest.camera, &x));

@@ -168,12 +168,7 @@ fn scene_of(places: &[(f64, f64, f64)], photograph: impl Fn(&Camera) -> Gray) ->
         .collect();
     Scene {
         views,
-        origin: Vector3::zeros(),
-        ground_z: None,
-        region: None,
-        known: crate::orienting::known::Known::default(),
-        warnings: Vec::new(),
-        survey: crate::orienting::scene::Survey::default(),
+        ..Scene::default()
     }
 }
 

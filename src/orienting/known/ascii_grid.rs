@@ -13,10 +13,9 @@ use std::collections::BTreeMap;
 use std::iter::Peekable;
 
 use super::height_grid::{HeightGrid, Placement, StoredHeights};
-use super::refusal::refusal;
 use super::system::Way;
 use crate::base::error::{Error, Result};
-use crate::orienting::orientation::InputFile;
+use crate::orienting::orientation::{InputFile, TextLine, lines};
 
 /// What a header may state, by its name in small letters.
 const NAMES: [&str; 10] = [
@@ -38,22 +37,23 @@ pub(super) fn read(file: &InputFile, way: Way) -> Result<HeightGrid> {
         true => text.replace(',', "."),
         false => text.into_owned(),
     };
-    let mut lines = text.lines().enumerate().peekable();
-    let header = read_header(file, &mut lines)?;
+    let refuse = |line: usize, problem: String, expected: &str| {
+        Error::line(&file.path, line, problem, expected)
+    };
+    let mut lines = lines(&file.path, &text).peekable();
+    let header = read_header(&mut lines)?;
     let stated = |name: &str| header.get(name).copied();
     let number = |name: &str| {
         stated(name).ok_or_else(|| {
             let problem = format!("the header states no {name}");
-            refuse(file, 1, problem, "the header of an ASCII grid")
+            refuse(1, problem, "the header of an ASCII grid")
         })
     };
     let count = |name: &str| {
         let count = number(name)?;
         let is_count = (2.0..1e6).contains(&count) && count.fract() == 0.0;
-        let problem = || format!("{name} is {count}");
-        is_count
-            .then_some(count as usize)
-            .ok_or_else(|| refuse(file, 1, problem(), "a whole number from 2"))
+        let wrong = || refuse(1, format!("{name} is {count}"), "a whole number from 2");
+        is_count.then_some(count as usize).ok_or_else(wrong)
     };
     let (columns, rows) = (count("ncols")?, count("nrows")?);
     let cell = |own: &str| stated(own).map_or_else(|| number("cellsize"), Ok);
@@ -64,7 +64,12 @@ pub(super) fn read(file: &InputFile, way: Way) -> Result<HeightGrid> {
     };
     let west = center("xllcenter", "xllcorner", cell[0])?;
     let south = center("yllcenter", "yllcorner", cell[1])?;
-    let heights = read_heights(file, lines, [columns, rows], text.lines().count())?;
+    let heights = read_heights(lines, [columns, rows])?;
+    let wanted = columns * rows;
+    if heights.len() < wanted {
+        let problem = format!("the file ends after {} of {wanted} heights", heights.len());
+        return Err(refuse(text.lines().count(), problem, EVERY_CELL));
+    }
     let first = [west, south + (rows - 1) as f64 * cell[1]];
     // Heights are read as they are written: the value that stands for none as well.
     let no_data = stated("nodata_value").unwrap_or(-9999.0) as f32;
@@ -79,26 +84,16 @@ pub(super) fn read(file: &InputFile, way: Way) -> Result<HeightGrid> {
         StoredHeights::as_they_are(heights, Some(no_data)),
         way,
     )
-    .map_err(|problem| refusal(&file.path, &problem, "give heights of the ground"))
-}
-
-fn refuse(file: &InputFile, line: usize, problem: String, expected: &str) -> Error {
-    Error::Line {
-        file: file.path.clone(),
-        line,
-        problem,
-        expected: expected.to_owned(),
-    }
+    .map_err(|problem| Error::file(&file.path, problem, "give heights of the ground"))
 }
 
 /// Takes the lines of the header, and blank ones before and after it.
 fn read_header<'a>(
-    file: &InputFile,
-    lines: &mut Peekable<impl Iterator<Item = (usize, &'a str)>>,
+    lines: &mut Peekable<impl Iterator<Item = TextLine<'a>>>,
 ) -> Result<BTreeMap<String, f64>> {
     let mut header = BTreeMap::new();
-    while let Some((i, line)) = lines.peek().copied() {
-        let mut words = line.split_whitespace();
+    while let Some(line) = lines.peek().copied() {
+        let mut words = line.text.split_whitespace();
         let Some(name) = words.next() else {
             lines.next();
             continue;
@@ -108,14 +103,12 @@ fn read_header<'a>(
             break;
         }
         let value = words.next().and_then(|word| word.parse().ok());
-        let value: f64 = value.ok_or_else(|| {
-            let problem = format!("'{name}' has no number");
-            refuse(file, i + 1, problem, "a name and a number")
-        })?;
+        let value: f64 = value
+            .ok_or_else(|| line.error(format!("'{name}' has no number"), "a name and a number"))?;
         if !NAMES.contains(&&*known) {
             let problem = format!("'{name}' is no part of the header");
             let expected = "ncols, nrows, xllcorner, yllcorner, cellsize or NODATA_value";
-            return Err(refuse(file, i + 1, problem, expected));
+            return Err(line.error(problem, expected));
         }
         header.insert(known, value);
         lines.next();
@@ -123,36 +116,33 @@ fn read_header<'a>(
     Ok(header)
 }
 
-/// One height for every cell, of the lines below the header; `last` is the number of the last one.
+/// What a grid has to hold.
+const EVERY_CELL: &str = "one height for every cell";
+
+/// The heights of the lines below the header, no more than there are cells.
 fn read_heights<'a>(
-    file: &InputFile,
-    lines: impl Iterator<Item = (usize, &'a str)>,
+    lines: impl Iterator<Item = TextLine<'a>>,
     [columns, rows]: [usize; 2],
-    last: usize,
 ) -> Result<Vec<f32>> {
-    let wanted = columns * rows;
-    let expected = "one height for every cell";
     let mut heights: Vec<f32> = Vec::new();
-    for (i, line) in lines {
-        for word in line.split_whitespace() {
+    for line in lines {
+        for word in line.text.split_whitespace() {
             // As the runtime of Microsoft's compilers writes what is no number.
             let is_none = word.contains('#') || word.to_ascii_lowercase().contains("nan");
             let z = if is_none { Ok(f32::NAN) } else { word.parse() };
             let z = z.map_err(|_| {
                 let word: String = word.chars().take(20).collect();
-                let problem = format!("'{word}' is no number");
-                refuse(file, i + 1, problem, "heights with a decimal point")
+                line.error(
+                    format!("'{word}' is no number"),
+                    "heights with a decimal point",
+                )
             })?;
-            if heights.len() == wanted {
+            if heights.len() == columns * rows {
                 let problem = format!("there are more than {columns} x {rows} heights");
-                return Err(refuse(file, i + 1, problem, expected));
+                return Err(line.error(problem, EVERY_CELL));
             }
             heights.push(z);
         }
-    }
-    if heights.len() < wanted {
-        let problem = format!("the file ends after {} of {wanted} heights", heights.len());
-        return Err(refuse(file, last, problem, expected));
     }
     Ok(heights)
 }

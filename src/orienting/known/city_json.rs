@@ -5,13 +5,12 @@
 use serde_json::Value;
 
 use super::footprint::Outline;
-use super::refusal::refusal;
 use super::system::{StatedSystem, Way, WorldSystem};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::orienting::orientation::InputFile;
 
 pub(super) fn read(file: &InputFile, json: &Value, system: &WorldSystem) -> Result<Vec<Outline>> {
-    let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
+    let refuse = |problem: &str, advice: &str| Error::file(&file.path, problem, advice);
     let stated = match &json["metadata"]["referenceSystem"] {
         Value::String(name) => StatedSystem::named(name),
         _ => StatedSystem::unstated(),

@@ -3,6 +3,7 @@
 use nalgebra::{Point2, Vector3};
 
 use crate::base::geometry::{Polygon, bounds, sides, signed_area};
+use crate::orienting::orientation::A_M;
 
 /// An outline as a file has it, in the world frame.
 pub(super) struct Outline {
@@ -25,9 +26,6 @@ pub struct Footprint {
 /// Most corners of a ring. Assumption: no building has more.
 const MOST_CORNERS: usize = 5000;
 
-/// Circumference of the Earth at the equator, metres.
-const EARTH_M: f64 = 40_075_017.0;
-
 impl Footprint {
     /// A footprint of an outline, less the origin of the scene; otherwise why it is none.
     pub(super) fn new(outline: Outline, origin: Vector3<f64>) -> Result<Self, String> {
@@ -49,7 +47,8 @@ impl Footprint {
                 n if n > MOST_CORNERS => return Err(format!("{what} has {n} corners")),
                 _ => {}
             }
-            if ring.iter().any(|p| p.coords.amax() > EARTH_M) {
+            let around_the_earth = std::f64::consts::TAU * A_M;
+            if ring.iter().any(|p| p.coords.amax() > around_the_earth) {
                 return Err(format!("{what} has a corner that is no place on the Earth"));
             }
             if let Some([i, j]) = crossing(&ring) {

@@ -6,9 +6,8 @@
 use serde_json::Value;
 
 use super::footprint::Outline;
-use super::refusal::refusal;
 use super::system::{StatedSystem, Way, WorldSystem};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::orienting::orientation::InputFile;
 
 /// Reads footprints; what was assumed of them goes to `warnings`.
@@ -21,7 +20,7 @@ pub(super) fn read(
     let refuse = |problem: &str| {
         let advice = "state the system of the orientation (--crs), or convert the file to it with \
                       ogr2ogr and name it in its crs member";
-        refusal(&file.path, problem, advice)
+        Error::file(&file.path, problem, advice)
     };
     let one = std::slice::from_ref(json);
     let features = match json["type"].as_str() {
@@ -50,9 +49,9 @@ pub(super) fn read(
         let name = name_of(feature, i);
         for polygon in polygons_of(geometry) {
             let rings = rings_of(polygon, &way).ok_or_else(|| {
-                refusal(
+                Error::file(
                     &file.path,
-                    &format!("the coordinates of footprint {name} are no places"),
+                    format!("the coordinates of footprint {name} are no places"),
                     "give rings of positions, each two or three finite numbers in the stated system",
                 )
             })?;

@@ -3,9 +3,8 @@
 
 use super::geo_keys::{self, GeoKeys};
 use super::height_grid::{HeightGrid, Placement, StoredHeights};
-use super::refusal::refusal;
 use super::system::{StatedPlan, StatedSystem, WorldSystem};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::orienting::orientation::{InputFile, LinearUnit};
 use crate::photographs::raster::{Directory, NumberRaster, tiff_tags as tags};
 
@@ -15,7 +14,7 @@ pub(super) fn read(
     system: &WorldSystem,
     beside: Option<StatedSystem>,
 ) -> Result<HeightGrid> {
-    let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
+    let refuse = |problem: &str, advice: &str| Error::file(&file.path, problem, advice);
     let place = "give a GeoTIFF, whose tags state where it lies, north up";
     // What has a place and heights is never held by its head.
     if file.lacking().is_some() {

@@ -14,14 +14,13 @@
 
 use std::collections::VecDeque;
 
+use super::TERRAIN_ACCURACY_M;
+
 /// Rise of ground over a cell, metres a metre (80 degrees). Assumption: steeper ground is rock,
 /// which has a gentler side.
 const STEEPEST_SLOPE: f32 = 5.7;
 /// Nothing stands higher above the ground, metres: the tallest roof that is looked for.
 const TALLEST_ROOF_HEIGHT_M: f32 = 60.0;
-/// Steps all around of less than this are the ground's own, metres: three standard deviations of
-/// the heights of a model that states none.
-const EXPLAINED_STEP_M: f32 = 0.9;
 /// So many cells beside a hole an interpolation reaches: a cubic one takes two on each side.
 const RIM: u8 = 2;
 
@@ -103,10 +102,12 @@ pub(super) fn take_out(heights: &mut [f32], columns: usize, cell_m: f64) -> usiz
         parts[ground].low - step,
         parts[ground].high + TALLEST_ROOF_HEIGHT_M,
     );
+    // Smaller steps all around are the ground's own: three standard deviations of the heights.
+    let explained = 3.0 * TERRAIN_ACCURACY_M as f32;
     for (i, part) in parts.iter_mut().enumerate().skip(1) {
         let is_off = part.high < low || part.low > high;
         let is_pit = part.is_below && part.is_beyond(step);
-        let is_filled = is_filler(part) && part.least_step > EXPLAINED_STEP_M;
+        let is_filled = is_filler(part) && part.least_step > explained;
         part.is_hole = i != ground && (is_off || is_pit || is_filled);
     }
     mark_rims(&of_cell, &mut parts, columns);

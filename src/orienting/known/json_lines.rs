@@ -18,12 +18,8 @@ pub(super) fn begins(text: &str) -> bool {
 
 /// The value of a file.
 pub(super) fn read(file: &InputFile) -> Result<Value> {
-    json_of(&file.text()).map_err(|line| Error::Line {
-        file: file.path.clone(),
-        line,
-        problem: "it is no JSON".to_owned(),
-        expected: "GeoJSON or CityJSON, or one feature a line".to_owned(),
-    })
+    let expected = "GeoJSON or CityJSON, or one feature a line";
+    json_of(&file.text()).map_err(|line| Error::line(&file.path, line, "it is no JSON", expected))
 }
 
 /// The value of a text; otherwise the line that is damaged.

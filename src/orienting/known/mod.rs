@@ -31,7 +31,6 @@ mod height_grid;
 mod holes;
 mod json_lines;
 mod point_cloud;
-mod refusal;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -48,8 +47,7 @@ use std::sync::Arc;
 
 use nalgebra::{Point2, Point3, Vector3};
 
-use self::refusal::refusal;
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::orienting::orientation::{InputFile, POINT_CLOUD, is_ascii_grid};
 
 /// What is known of a scene; frame and units of the scene.
@@ -127,7 +125,7 @@ impl PointCloud {
         within: Option<[f64; 4]>,
     ) -> Result<Self> {
         if !file.bytes.starts_with(POINT_CLOUD) {
-            return Err(refusal(
+            return Err(Error::file(
                 &file.path,
                 "it is no point cloud that is read",
                 "give a LAS or LAZ file; other formats become one with pdal translate",
@@ -162,15 +160,15 @@ impl Terrain {
         } else if (file.start_as_text(64)).is_some_and(|text| is_ascii_grid(&text)) {
             let stated = beside.unwrap_or_else(StatedSystem::unstated);
             let way = system.way_from(&stated).map_err(|problem| {
-                refusal(
+                Error::file(
                     &file.path,
-                    &problem,
+                    problem,
                     "convert it to the system of the orientation",
                 )
             })?;
             ascii_grid::read(file, way)?
         } else {
-            return Err(refusal(
+            return Err(Error::file(
                 &file.path,
                 "it is no terrain model that is read",
                 "give a GeoTIFF of heights, an ASCII grid of ESRI (.asc), or a point cloud (.las, \
@@ -226,17 +224,15 @@ impl Register {
         warnings: &mut Vec<String>,
     ) -> Result<Self> {
         let none = || {
-            refusal(
+            Error::file(
                 &file.path,
                 "it holds no footprints that are read",
                 "give polygons as GeoJSON, or buildings as CityJSON; a GeoPackage or a shapefile \
                  becomes GeoJSON with ogr2ogr",
             )
         };
-        if !file
-            .start_as_text(1024)
-            .is_some_and(|text| json_lines::begins(&text))
-        {
+        let start = file.start_as_text(1024);
+        if !start.is_some_and(|text| json_lines::begins(&text)) {
             return Err(none());
         }
         let json = json_lines::read(file)?;
@@ -249,11 +245,8 @@ impl Register {
         };
         if outlines.is_empty() {
             let problem = "it holds no polygons of buildings";
-            return Err(refusal(
-                &file.path,
-                problem,
-                "give polygons, not lines or points",
-            ));
+            let advice = "give polygons, not lines or points";
+            return Err(Error::file(&file.path, problem, advice));
         }
         let mut footprints = Vec::new();
         for outline in outlines {
@@ -269,7 +262,11 @@ impl Register {
         if footprints.is_empty() {
             let left_out = warnings.last().map_or("", String::as_str);
             let problem = format!("none of its footprints can be used; {left_out}");
-            return Err(refusal(&file.path, &problem, "give polygons of buildings"));
+            return Err(Error::file(
+                &file.path,
+                problem,
+                "give polygons of buildings",
+            ));
         }
         Ok(Self {
             file: file.path.clone(),
@@ -338,7 +335,7 @@ impl Register {
         };
         if let (Some(area), true) = (areas.first(), footprints.is_empty()) {
             let advice = "give footprints of buildings";
-            return Err(refusal(&self.file, &problem(area), advice));
+            return Err(Error::file(&self.file, problem(area), advice));
         }
         let said = areas
             .iter()

@@ -38,6 +38,9 @@ impl AngleUnit {
     }
 }
 
+/// Between image axes x right, y up, z back and those of our cameras, y down and z forward.
+pub(crate) const Y_UP: Matrix3<f64> = Matrix3::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0);
+
 /// `cam_from_world` (x right, y down, z forward) of the photogrammetric angles, radians.
 ///
 /// `R = Rx(omega) Ry(phi) Rz(kappa)` turns image axes (x right, y up, z towards the viewer) into
@@ -57,8 +60,7 @@ pub fn rotation_from_omega_phi_kappa(omega: f64, phi: f64, kappa: f64) -> Rotati
         so * ck + co * sp * sk,
         co * cp,
     );
-    let axes = Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, -1.0, -1.0));
-    Rotation3::from_matrix_unchecked(axes * world_from_image.transpose())
+    Rotation3::from_matrix_unchecked(Y_UP * world_from_image.transpose())
 }
 
 /// `cam_from_world` of yaw, pitch, roll as Metashape and Pix4D define them, radians: those of a
@@ -67,14 +69,18 @@ pub fn rotation_from_omega_phi_kappa(omega: f64, phi: f64, kappa: f64) -> Rotati
 ///
 /// In axes east, north, up that is `Rz(-yaw) Rx(pitch) Ry(roll)` from the image to the world.
 pub fn rotation_from_yaw_pitch_roll(yaw: f64, pitch: f64, roll: f64) -> Rotation3<f64> {
-    let (sy, cy) = math::sin_cos(yaw);
-    let (sp, cp) = math::sin_cos(pitch);
-    let (sr, cr) = math::sin_cos(roll);
-    let rz = Matrix3::new(cy, sy, 0.0, -sy, cy, 0.0, 0.0, 0.0, 1.0);
-    let rx = Matrix3::new(1.0, 0.0, 0.0, 0.0, cp, -sp, 0.0, sp, cp);
-    let ry = Matrix3::new(cr, 0.0, sr, 0.0, 1.0, 0.0, -sr, 0.0, cr);
-    let axes = Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, -1.0, -1.0));
-    Rotation3::from_matrix_unchecked(axes * (rz * rx * ry).transpose())
+    let [rx, ry, rz] = axis_rotations([pitch, roll, -yaw]);
+    Rotation3::from_matrix_unchecked(Y_UP * (rz * rx * ry).transpose())
+}
+
+/// Rotations about the axes x, y and z by these angles, radians.
+pub(crate) fn axis_rotations(angles: [f64; 3]) -> [Matrix3<f64>; 3] {
+    let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(math::sin_cos);
+    [
+        Matrix3::new(1.0, 0.0, 0.0, 0.0, cx, -sx, 0.0, sx, cx),
+        Matrix3::new(cy, 0.0, sy, 0.0, 1.0, 0.0, -sy, 0.0, cy),
+        Matrix3::new(cz, -sz, 0.0, sz, cz, 0.0, 0.0, 0.0, 1.0),
+    ]
 }
 
 /// The rotation next to a matrix whose elements were rounded (six digits are usual, four occur);
@@ -103,13 +109,12 @@ pub(crate) const EXACT_ROTATION: f64 = 1e-6;
 
 /// Deviation that rounding to four digits can leave; quaternions may miss a length of one by as
 /// much.
-const ROUNDED_DEVIATION: f64 = 1e-3;
+pub(super) const ROUNDED_DEVIATION: f64 = 1e-3;
 
 /// Omega, phi, kappa in radians of a rotation `cam_from_world`; the inverse of
 /// [`rotation_from_omega_phi_kappa`] for |phi| < pi/2.
 pub fn omega_phi_kappa_from_rotation(cam_from_world: &Matrix3<f64>) -> [f64; 3] {
-    let axes = Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, -1.0, -1.0));
-    let r = (axes * cam_from_world).transpose();
+    let r = (Y_UP * cam_from_world).transpose();
     [
         math::atan2(-r[(1, 2)], r[(2, 2)]),
         math::asin(r[(0, 2)].clamp(-1.0, 1.0)),

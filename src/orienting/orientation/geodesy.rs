@@ -11,6 +11,11 @@ pub(crate) const A_M: f64 = 6_378_137.0;
 /// Square of its first eccentricity.
 const E2: f64 = 6.694_379_990_141_316e-3;
 
+/// No scene is as large, metres: what lies farther from it is another place, and coordinates beyond
+/// are those of a map, of which an origin is taken off. Single precision holds a millimetre of what
+/// is nearer. Assumption.
+pub(crate) const LARGEST_SCENE_M: f64 = 10_000.0;
+
 /// No datums of heights are further apart, metres: the geoid lies between 107 below and 86 above
 /// the ellipsoid, and datums of charts and old levels some metres beside it.
 pub const MOST_DATUM_M: f64 = 200.0;

@@ -58,16 +58,17 @@ mod units;
 mod unread;
 mod well_known;
 
-pub(crate) use angles::EXACT_ROTATION;
 pub use angles::{
     AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa,
     rotation_from_yaw_pitch_roll,
 };
+pub(crate) use angles::{EXACT_ROTATION, Y_UP, axis_rotations};
 pub use detect::{FileKind, detect};
 pub(crate) use detect::{GCP_LIST, GEO_LIST, POINT_CLOUD, is_ascii_grid};
 pub(crate) use epsg::{TransverseMercator, is_geographic, plane_of};
 pub use format::Format;
-pub(crate) use geodesy::{A_M, geocentric_of, geographic_of};
+pub(crate) use formats::{TextLine, data_lines, lines};
+pub(crate) use geodesy::{A_M, LARGEST_SCENE_M, geocentric_of, geographic_of};
 pub use geodesy::{Anchor, MOST_DATUM_M};
 pub use image_orientation::{Crop, Orientation};
 pub use input_file::InputFile;

@@ -10,9 +10,10 @@ use super::formats::{
 };
 use super::image_orientation::Orientation;
 use super::input_file::InputFile;
+use super::path_name::{PathName, images_called};
 use super::reference::{self, FrameSigma, StatedReference};
 use crate::base::error::Result;
-use crate::photographs::raster::image_header;
+use crate::photographs::raster::{image_format, image_header};
 
 /// Files that together orient images: one candidate for the orientation of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +27,15 @@ pub struct OrientationSet {
 }
 
 impl OrientationSet {
+    /// Of files of which the first one says in which folder they lie.
+    fn new(format: Format, inputs: &[InputFile], files: Vec<usize>) -> Self {
+        Self {
+            format,
+            folder: inputs[files[0]].folder().to_owned(),
+            files,
+        }
+    }
+
     /// The paths of its files, for messages and for choosing between sets: the folder when there
     /// are many.
     pub fn label(&self, inputs: &[InputFile]) -> String {
@@ -116,7 +126,20 @@ impl OrientationSet {
             Format::Shots => opensfm::read_shots(file(0), further(1), warnings),
             Format::Krc => krc::read(path, text),
             Format::Nerfstudio => {
-                nerfstudio::read(path, text, &|name| size_of_image(inputs, name), warnings)
+                let images = inputs
+                    .iter()
+                    .filter(|file| image_format(&file.bytes).is_some());
+                let images: Vec<&InputFile> = images.collect();
+                let names: Vec<PathName> = (images.iter())
+                    .map(|file| PathName::new(&file.path))
+                    .collect();
+                let size_of = |name: &str| {
+                    let mut called = images_called(name, &names).into_iter();
+                    let header = |i: usize| image_header(&images[i].path, images[i].content());
+                    let found = called.find_map(|i| header(i).ok())?;
+                    Some([found.width, found.height])
+                };
+                nerfstudio::read(path, text, &size_of, warnings)
             }
             Format::Bundler => bundles::read_bundler(file(0), file(1), further(2), warnings),
             Format::Nvm => bundles::read_nvm(path, text),
@@ -135,32 +158,6 @@ fn has_further(format: Format) -> bool {
         format,
         Format::Bundler | Format::Colmap | Format::ColmapBinary
     )
-}
-
-/// The size of the image that a name with or without folders and extension means.
-fn size_of_image(inputs: &[InputFile], name: &str) -> Option<[u32; 2]> {
-    let name = name.replace('\\', "/");
-    let name = name.trim_start_matches(['.', '/']);
-    let ends = |path: &str| {
-        path.strip_suffix(name)
-            .is_some_and(|p| p.is_empty() || p.ends_with('/'))
-    };
-    let bare = |path: &str| {
-        path.rsplit_once('.')
-            .map_or(path.to_owned(), |(bare, _)| bare.to_owned())
-    };
-    let header = |file: &InputFile| image_header(&file.path, file.content()).ok();
-    let stem = super::input_file::stem(name);
-    let mut fitting = inputs
-        .iter()
-        .filter(|f| ends(&f.path) || ends(&bare(&f.path)));
-    let mut called = inputs
-        .iter()
-        .filter(|f| super::input_file::stem(&f.path) == stem);
-    let found = fitting
-        .find_map(header)
-        .or_else(|| called.find_map(header))?;
-    Some([found.width, found.height])
 }
 
 fn each<T: AsRef<str>>(
@@ -207,21 +204,16 @@ pub fn orientation_sets(
     }
     for (i, kind) in kinds.iter().enumerate() {
         if let Some(format) = single_file_format(*kind) {
-            sets.push(OrientationSet {
-                format,
-                folder: inputs[i].folder().to_owned(),
-                files: vec![i],
-            });
+            sets.push(OrientationSet::new(format, inputs, vec![i]));
         }
     }
-    sets.extend(folders(
-        inputs,
-        kinds,
-        Format::Projection,
-        FileKind::Projection,
-    ));
-    sets.extend(folders(inputs, kinds, Format::Strecha, FileKind::Strecha));
-    sets.extend(folders(inputs, kinds, Format::Micmac, FileKind::Micmac));
+    for (format, kind) in [
+        (Format::Projection, FileKind::Projection),
+        (Format::Strecha, FileKind::Strecha),
+        (Format::Micmac, FileKind::Micmac),
+    ] {
+        sets.extend(folders(inputs, kinds, format, kind));
+    }
     for set in &mut sets {
         add_files_beside(inputs, kinds, set);
     }
@@ -338,9 +330,8 @@ fn add_pairs(
             .or(firsts.first().filter(|_| firsts.len() == 1));
         match partner {
             Some(&f) => sets.push(OrientationSet {
-                format,
                 folder: folder.to_owned(),
-                files: vec![f, s],
+                ..OrientationSet::new(format, inputs, vec![f, s])
             }),
             // Lists of images are written for many other ends.
             None if second == FileKind::BundlerList => {}
@@ -365,11 +356,9 @@ fn add_pairs(
         return;
     }
     if of(second).next().is_none() {
-        incomplete.extend(
-            firsts
-                .iter()
-                .map(|&f| format!("{} has no {} beside it", inputs[f].path, second.describe())),
-        );
+        let lacks =
+            |&f: &usize| format!("{} has no {} beside it", inputs[f].path, second.describe());
+        incomplete.extend(firsts.iter().map(lacks));
     }
 }
 
@@ -385,11 +374,7 @@ fn folders(
         let folder = inputs[i].folder();
         match sets.iter_mut().find(|s| s.folder == folder) {
             Some(set) => set.files.push(i),
-            None => sets.push(OrientationSet {
-                format,
-                folder: folder.to_owned(),
-                files: vec![i],
-            }),
+            None => sets.push(OrientationSet::new(format, inputs, vec![i])),
         }
     }
     sets

@@ -3,12 +3,12 @@
 
 use std::fmt;
 
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Matrix3, Point3};
 
 use super::view::CheckedView;
-use crate::base::math;
 use crate::orienting::orientation::{
-    AngleUnit, Crop, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa,
+    AngleUnit, Crop, Y_UP, axis_rotations, omega_phi_kappa_from_rotation,
+    rotation_from_omega_phi_kappa,
 };
 use crate::photographs::camera::Camera;
 
@@ -78,9 +78,9 @@ impl ErrorHypothesis {
         if views.iter().all(|p| p.angles.is_some()) {
             for unit in AngleUnit::ALL {
                 for order in AngleOrder::ALL {
+                    let of = |sequence| Self::AngleConvention(unit, order, sequence);
                     all.extend(
-                        [RotationSequence::OmegaFirst, RotationSequence::KappaFirst]
-                            .map(|sequence| Self::AngleConvention(unit, order, sequence)),
+                        [RotationSequence::OmegaFirst, RotationSequence::KappaFirst].map(of),
                     );
                 }
             }
@@ -101,9 +101,8 @@ impl ErrorHypothesis {
         let count = views.len();
         all.extend((1..count).map(Self::CyclicOrder));
         if count <= MAX_SWAPPED_VIEWS {
-            all.extend(
-                (0..count).flat_map(|a| (a + 1..count).map(move |b| Self::SwappedViews(a, b))),
-            );
+            let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
+            all.extend(pairs.map(|(a, b)| Self::SwappedViews(a, b)));
         }
         all
     }
@@ -117,12 +116,10 @@ impl ErrorHypothesis {
                 Self::ReversedOrder => with_orientation_of(view, &views[count - 1 - i]),
                 Self::CyclicOrder(n) => with_orientation_of(view, &views[(i + n) % count]),
                 Self::SwappedViews(a, b) => {
-                    let from = if i == a {
-                        b
-                    } else if i == b {
-                        a
-                    } else {
-                        i
+                    let from = match i {
+                        _ if i == a => b,
+                        _ if i == b => a,
+                        _ => i,
                     };
                     with_orientation_of(view, &views[from])
                 }
@@ -145,12 +142,12 @@ impl ErrorHypothesis {
                 // Lists count kappa from 0 to a full turn, or to half a turn both ways: the nearer
                 // to the factor's own range is unknown, but the former is what differs.
                 let full = std::f64::consts::TAU;
-                let kappa = if kappa < 0.0 && factor < 1.0 {
-                    kappa + full
+                let turn = if kappa < 0.0 && factor < 1.0 {
+                    full
                 } else {
-                    kappa
+                    0.0
                 };
-                let [o, p, k] = [omega, phi, kappa].map(|a| a * factor);
+                let [o, p, k] = [omega, phi, kappa + turn].map(|a| a * factor);
                 camera.r = rotation_from_omega_phi_kappa(o, p, k).into_inner();
             }
             Self::Transposed => camera.r = camera.r.transpose(),
@@ -162,7 +159,7 @@ impl ErrorHypothesis {
                 camera.center = Point3::from(t - view.origin);
             }
             Self::CameraYUp => {
-                camera.r = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * camera.r;
+                camera.r = Y_UP * camera.r;
             }
             Self::PrincipalPointFromBottom => camera.k[(1, 2)] = height - camera.k[(1, 2)],
             Self::PrincipalPointInMiddle => {
@@ -298,14 +295,8 @@ impl RotationSequence {
         match self {
             Self::OmegaFirst => rotation_from_omega_phi_kappa(omega, phi, kappa).into_inner(),
             Self::KappaFirst => {
-                let (so, co) = math::sin_cos(omega);
-                let (sp, cp) = math::sin_cos(phi);
-                let (sk, ck) = math::sin_cos(kappa);
-                let rx = Matrix3::new(1.0, 0.0, 0.0, 0.0, co, -so, 0.0, so, co);
-                let ry = Matrix3::new(cp, 0.0, sp, 0.0, 1.0, 0.0, -sp, 0.0, cp);
-                let rz = Matrix3::new(ck, -sk, 0.0, sk, ck, 0.0, 0.0, 0.0, 1.0);
-                let axes = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
-                axes * (rz * ry * rx).transpose()
+                let [rx, ry, rz] = axis_rotations([omega, phi, kappa]);
+                Y_UP * (rz * ry * rx).transpose()
             }
         }
     }

@@ -6,7 +6,7 @@
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Point2, Point3, Vector2, Vector3};
 
 use super::epipolar_check::EpipolarCheck;
-use super::subpixel::PointMatch;
+use super::subpixel::{MIN_MATCHES, PointMatch};
 use crate::base::least_squares::{EnvelopeEquations, Loss, NormalEquations, Pattern, Stop, fit};
 use crate::photographs::camera::Camera;
 
@@ -20,9 +20,6 @@ const MAX_CANDIDATES: usize = 8;
 
 /// Least redundancy (observations minus unknowns) of a scene.
 const MIN_REDUNDANCY: usize = 60;
-
-/// Fewest observations of a view that may be freed.
-const MIN_OBSERVATIONS: usize = 12;
 
 /// Magnitudes of the residuals.
 pub(crate) struct ResidualScale {
@@ -225,7 +222,7 @@ impl<'a> ShiftAdjustment<'a> {
 /// Views that may be freed next: enough observations, the largest residuals first.
 fn candidates(residuals: &[Vec<f64>], free: &[usize]) -> Vec<usize> {
     let mut ranked: Vec<(f64, usize)> = (0..residuals.len())
-        .filter(|i| !free.contains(i) && residuals[*i].len() >= MIN_OBSERVATIONS)
+        .filter(|i| !free.contains(i) && residuals[*i].len() >= MIN_MATCHES)
         .filter_map(|i| Some((crate::base::math::median(&mut residuals[i].clone())?, i)))
         .collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));

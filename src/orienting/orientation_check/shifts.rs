@@ -24,6 +24,7 @@ use super::epipolar_check::{EpipolarCheck, mean_axis};
 use super::shift_adjustment::{ResidualScale, ShiftAdjustment};
 use super::subpixel::PointMatch;
 use crate::base::execution::parallel;
+use crate::base::math::SURE_SIGMAS;
 use crate::orienting::scene::ViewShift;
 use crate::photographs::camera::Camera;
 
@@ -59,7 +60,7 @@ impl ViewShift {
     pub fn is_significant(&self) -> bool {
         let [x, y] = self.shift_px;
         let length = (x * x + y * y).sqrt();
-        length > MIN_SHIFT_PX.max(SHIFT_SIGMAS * self.sigma_px)
+        length > MIN_SHIFT_PX.max(SURE_SIGMAS * self.sigma_px)
             && length < MAX_SHIFT_PX
             && self.after_px < self.before_px
     }
@@ -67,10 +68,6 @@ impl ViewShift {
 
 /// Least shift that matters: lines are found to about a tenth of a pixel.
 const MIN_SHIFT_PX: f64 = 0.15;
-
-/// Least significant shift, standard deviations. Assumption: views are many, and each could be
-/// named.
-const SHIFT_SIGMAS: f64 = 4.0;
 
 /// The shifts of all views; `None` where too little is matched. `coarse` are the shifts with which
 /// the matches were searched.

@@ -20,8 +20,8 @@ const MIN_OFFSET_PX: f64 = 0.25;
 /// Largest share of the offset that may remain.
 const MAX_REMAINING_SHARE: f64 = 0.5;
 
-/// Fewest correspondences of a pair of views for a median.
-const MIN_MATCHES: usize = 12;
+/// Fewest correspondences of a pair of views, or of one that is moved, for a median.
+pub(super) const MIN_MATCHES: usize = 12;
 
 /// A point that is matched in a pair of views, pixels.
 pub(crate) struct PointMatch {

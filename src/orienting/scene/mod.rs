@@ -57,7 +57,7 @@ impl View {
 }
 
 /// Oriented views, the ground and the reference system.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// The views, sorted by name.
     pub views: Vec<View>,
@@ -116,9 +116,7 @@ impl Scene {
             origin: self.origin,
             ground_z: self.ground_z,
             region: self.region,
-            known: Known::default(),
-            warnings: Vec::new(),
-            survey: Survey::default(),
+            ..Scene::default()
         }
     }
 

@@ -23,10 +23,12 @@ pub fn unpack(file: InputFile) -> Result<Vec<InputFile>> {
     if !file.bytes.starts_with(b"PK\x03\x04") {
         return Ok(vec![file]);
     }
-    let refuse = |problem: String| Error::File {
-        file: file.path.clone(),
-        problem,
-        advice: "unpack it and add the files, or pack it again".to_owned(),
+    let refuse = |problem: String| {
+        Error::file(
+            &file.path,
+            problem,
+            "unpack it and add the files, or pack it again",
+        )
     };
     let mut archive = ZipArchive::new(Cursor::new(&file.bytes))
         .map_err(|e| refuse(format!("the archive cannot be read: {e}")))?;

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::assignment::{ImageCandidate, assign};
 use crate::base::error::listed;
 use crate::orienting::orientation::{Format, InputFile, Orientation, OrientationSet};
+use crate::photographs::camera::FEWEST_VIEWS;
 
 /// One of the orientations that a scene may be given.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -154,7 +155,7 @@ pub(crate) fn take_group(
     let mut group = &groups[0];
     if let Some(wanted) = groups.iter().find(|group| Some(&***group) == wanted) {
         group = wanted;
-    } else if oriented(group) < 3 {
+    } else if oriented(group) < FEWEST_VIEWS {
         // The first of several with the same number is the preferred one.
         group = groups
             .iter()

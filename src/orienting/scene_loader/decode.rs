@@ -82,11 +82,11 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
         false => load_window(&file.path, file.content(), stored)?,
     };
     if photograph.rgb.dimensions() != (stored[2], stored[3]) {
-        return Err(Error::File {
-            file: file.path.clone(),
-            problem: "its header and its content have different sizes".to_owned(),
-            advice: "save it anew in an image program, at full size".to_owned(),
-        });
+        return Err(Error::file(
+            &file.path,
+            "its header and its content have different sizes",
+            "save it anew in an image program, at full size",
+        ));
     }
     if let Some(turn) = planned.turn {
         photograph = turn.apply(&photograph);

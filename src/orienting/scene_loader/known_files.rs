@@ -182,11 +182,7 @@ impl KnownOf<'_> {
                 "name its system in it, or leave it out (--without)",
             ),
         };
-        Err(Error::File {
-            file: register.file,
-            problem: problem.to_owned(),
-            advice: advice.to_owned(),
-        })
+        Err(Error::file(register.file, problem, advice))
     }
 }
 
@@ -263,11 +259,7 @@ fn chosen<'a>(
     match (named, of_kind) {
         (Some(path), _) => {
             let file = files.iter().find(|file| file.path == path);
-            let missing = || Error::File {
-                file: path.to_owned(),
-                problem: "it is not among the files".to_owned(),
-                advice: "add it to them".to_owned(),
-            };
+            let missing = || Error::file(path, "it is not among the files", "add it to them");
             Ok(meant(file.ok_or_else(missing)?, true))
         }
         (None, []) => Ok(None),

@@ -12,7 +12,7 @@ use super::planned_view::PlannedView;
 use super::region;
 use crate::base::agreement::{AgreementReport, Finding};
 use crate::base::error::{Error, Result};
-use crate::orienting::known::{Known, WorldSystem};
+use crate::orienting::known::WorldSystem;
 use crate::orienting::orientation::{FileKind, FileSource, InputFile};
 use crate::orienting::orientation_check::CheckedView;
 use crate::orienting::scene::{Scene, Survey, View};
@@ -86,8 +86,6 @@ fn load_planned(plan: Plan, files: &[InputFile], options: &LoadOptions) -> Resul
         ground_z: options
             .ground_z
             .map(|z| z - plan.origin.z - checked.origin_change.z),
-        region: None,
-        known: Known::default(),
         warnings: (plan.warnings.into_iter().chain(placement_warnings))
             .chain(checked.warnings)
             .collect(),
@@ -96,6 +94,7 @@ fn load_planned(plan: Plan, files: &[InputFile], options: &LoadOptions) -> Resul
             agreement: Some(checked.report),
             ..plan.survey
         },
+        ..Scene::default()
     };
     add_known(&mut scene, files, &plan.kinds, options)?;
     if let (Some(roi), true) = (options.roi, plan.is_cut_later) {
@@ -105,13 +104,13 @@ fn load_planned(plan: Plan, files: &[InputFile], options: &LoadOptions) -> Resul
 }
 
 fn cut_before(unit: &str) -> Error {
-    Error::Scene {
-        problem: format!(
+    Error::scene(
+        format!(
             "the images show that the angles are in {unit}, but the region of interest was cut \
              before, for want of memory"
         ),
-        advice: format!("state the unit in the list (\"# angles in {unit}\")"),
-    }
+        format!("state the unit in the list (\"# angles in {unit}\")"),
+    )
 }
 
 /// Adds the region of interest and what is known of it.
@@ -175,10 +174,9 @@ pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> 
         views: plan.views.iter().map(view).collect(),
         origin: plan.origin,
         ground_z: options.ground_z.map(|z| z - plan.origin.z),
-        region: None,
-        known: Known::default(),
         warnings: [plan.warnings, plan.placement_warnings].concat(),
         survey: plan.survey,
+        ..Scene::default()
     })
 }
 

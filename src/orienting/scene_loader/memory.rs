@@ -64,16 +64,13 @@ pub(crate) fn check_memory(
     let limit = u64::from(limit_mb.unwrap_or(MEMORY_MB)) << 20;
     let pixels: u64 = views.iter().map(PlannedView::pixels).sum();
     let mb = |bytes: u64| bytes >> 20;
-    (peak_bytes > limit).then(|| Error::Scene {
-        problem: format!(
+    (peak_bytes > limit).then(|| Error::scene(format!(
             "{} views of together {} megapixels need about {} MB of memory, more than {} MB",
             views.len(),
             pixels / 1_000_000,
             mb(peak_bytes),
             mb(limit)
-        ),
-        advice: "choose a region of interest (with the height of the ground it is cut closer) or fewer views".to_owned(),
-    })
+        ), "choose a region of interest (with the height of the ground it is cut closer) or fewer views"))
 }
 
 #[cfg(test)]

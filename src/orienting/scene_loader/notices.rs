@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::planned_view::{PlannedImage, PlannedView};
 use crate::base::error::{Error, listed};
 use crate::orienting::orientation::{FileKind, InputFile, stem};
+use crate::photographs::camera::FEWEST_VIEWS;
 use crate::photographs::raster::{Bands, UnreadImageFormat, unread_image_format};
 
 /// What is said of images.
@@ -27,7 +28,7 @@ pub(super) fn of_images(
         errors: Vec::new(),
     };
     let read = kinds.iter().filter(|k| **k == FileKind::Image);
-    let is_short = read.count() < 3;
+    let is_short = read.count() < FEWEST_VIEWS;
     for (format, names) in unread(files, kinds, is_short) {
         let error = refusal(&format, &names);
         match is_short {
@@ -121,19 +122,19 @@ fn unread<'a>(
 
 fn refusal(format: &UnreadImageFormat, names: &[&str]) -> Error {
     match names {
-        [one] => Error::File {
-            file: (*one).to_owned(),
-            problem: format!("it is {}, which is not read", format.name),
-            advice: format.advice.to_owned(),
-        },
-        _ => Error::Scene {
-            problem: format!(
+        [one] => Error::file(
+            *one,
+            format!("it is {}, which is not read", format.name),
+            format.advice,
+        ),
+        _ => Error::scene(
+            format!(
                 "{} files are not read, each {}: {}",
                 names.len(),
                 format.name,
                 listed(names.iter())
             ),
-            advice: format.advice.replace("convert it", "convert each"),
-        },
+            format.advice.replace("convert it", "convert each"),
+        ),
     }
 }

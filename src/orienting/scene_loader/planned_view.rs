@@ -129,11 +129,7 @@ pub(super) fn planned_view(
     header: &ImageHeader,
     orientation: &Orientation,
 ) -> Result<PlannedView> {
-    let refuse = |problem: String, advice: &str| Error::File {
-        file: path.to_owned(),
-        problem,
-        advice: advice.to_owned(),
-    };
+    let refuse = |problem: String, advice: &str| Error::file(path, problem, advice);
     let turn = turn_of(header, orientation);
     let (width, height) = shown_size(header, turn);
     if let Some((w, h)) = orientation.size.filter(|&size| size != (width, height)) {

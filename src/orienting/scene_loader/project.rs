@@ -135,11 +135,7 @@ pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Pro
 }
 
 fn refuse(problem: &str) -> Error {
-    Error::File {
-        file: "the project".to_owned(),
-        problem: problem.to_owned(),
-        advice: "write it without large files".to_owned(),
-    }
+    Error::file("the project", problem, "write it without large files")
 }
 
 #[cfg(test)]

@@ -7,10 +7,10 @@ use super::block::{Block, Observation, Pose};
 use super::bundle::{BundleOptions, adjust};
 use super::intrinsics::{Intrinsics, PARAMETERS};
 use super::resection::{ResectionProblem, resect};
-use super::triangulation::{LARGEST_RESIDUAL_SIGMAS, LEAST_ANGLE, largest_angle, triangulate};
+use super::triangulation::{LEAST_ANGLE, largest_angle, triangulate};
 use super::two_view::{PairKind, TwoViewGeometry};
 use crate::base::execution::{map, reached};
-use crate::base::math::RAYLEIGH_MEDIAN;
+use crate::base::math::{RAYLEIGH_MEDIAN, SURE_SIGMAS};
 
 /// A pair whose matches agree with one geometry.
 pub(super) struct VerifiedPair {
@@ -23,11 +23,9 @@ pub(super) struct VerifiedPair {
 /// First pairs that are tried.
 const MOST_STARTS: usize = 6;
 
-/// Fewest points of the first pair.
-const FEWEST_FIRST_POINTS: usize = 30;
-
-/// Fewest points that a photograph must see, and share of those it sees that must agree.
-const FEWEST_POINTS: usize = 15;
+/// Fewest points that a photograph must see, and each of the first pair; and share of those it sees
+/// that must agree.
+pub(super) const FEWEST_POINTS: usize = 15;
 const LEAST_SHARE: f64 = 0.25;
 
 /// Photographs tried at a time: those that see the most points.
@@ -155,7 +153,7 @@ impl Growing<'_> {
         let tracks: Vec<usize> = self.of_photo[first].iter().map(|t| t.0).collect();
         retriangulate(block, &tracks);
         let count = |b: &Block| b.tracks.iter().filter(|t| t.point.is_some()).count();
-        if count(block) < FEWEST_FIRST_POINTS {
+        if count(block) < 2 * FEWEST_POINTS {
             return false;
         }
         // Two views do not calibrate a camera.
@@ -165,7 +163,7 @@ impl Growing<'_> {
         };
         adjust(block, self.means, &held);
         remove_outliers(block);
-        count(block) >= FEWEST_FIRST_POINTS
+        count(block) >= 2 * FEWEST_POINTS
     }
 
     fn options(&self, steps: usize) -> BundleOptions {
@@ -256,8 +254,7 @@ impl Growing<'_> {
             let t = &block.tracks[track];
             match t.point {
                 Some(point) => {
-                    let fits =
-                        block.residual(&t.observations[place], &point) <= LARGEST_RESIDUAL_SIGMAS;
+                    let fits = block.residual(&t.observations[place], &point) <= SURE_SIGMAS;
                     block.tracks[track].observations[place].is_used = fits;
                 }
                 None => open.push(track),
@@ -301,7 +298,7 @@ pub(super) fn remove_outliers(block: &mut Block) {
     let judged: Vec<Option<Vec<bool>>> = map(&block.tracks, |_, track| {
         let point = track.point?;
         let fits: Vec<bool> = (track.observations.iter())
-            .map(|o| block.residual(o, &point) <= LARGEST_RESIDUAL_SIGMAS)
+            .map(|o| block.residual(o, &point) <= SURE_SIGMAS)
             .collect();
         let used: Vec<Observation> = (track.observations.iter().zip(&fits))
             .filter(|(_, fits)| **fits)

@@ -4,8 +4,12 @@ use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
 use super::block::{Block, Pose};
 use super::linear::rotation_between;
+use super::random::Random;
 use crate::base::geometry::rotation_from_axis_angle;
 use crate::base::math;
+
+/// Fewest points that give a similarity in space, which has seven unknowns.
+pub(super) const FEWEST_POINTS: usize = 3;
 
 /// `x -> s R x + t`.
 #[derive(Clone, Debug)]
@@ -32,7 +36,32 @@ fn middle(points: &[Point3<f64>], weights: &[f64]) -> Vector3<f64> {
     weighted.fold(Vector3::zeros(), |a, b| a + b) / weights.iter().sum::<f64>()
 }
 
+/// Triples of points that are tried, at most.
+const TRIPLES: usize = 300;
+
 impl Similarity {
+    /// Of a start and of what random triples of so many points fit the one of least cost (Fischler,
+    /// Bolles 1981); `fitted` has none of triples that say too little.
+    pub(super) fn of_triples(
+        start: Self,
+        seed: u64,
+        points: usize,
+        fitted: impl Fn([usize; 3]) -> Option<Self>,
+        mut cost: impl FnMut(&Self) -> f64,
+    ) -> Self {
+        let mut random = Random::new(seed);
+        let mut best = (cost(&start), start);
+        for _ in 0..TRIPLES {
+            if let Some(found) = fitted(random.sample::<3>(points)) {
+                let cost = cost(&found);
+                if cost < best.0 {
+                    best = (cost, found);
+                }
+            }
+        }
+        best.1
+    }
+
     /// The similarity of least weighted squares from points to others (Horn 1987; Umeyama 1991);
     /// `None` where the points do not differ. Points on a line leave the turn about it open.
     pub(super) fn between(
@@ -54,11 +83,7 @@ impl Similarity {
         let rotation = rotation_between(&correlation);
         // trace(R a b^T) summed.
         let scale = (rotation.matrix() * correlation).trace() / square;
-        (scale > 0.0 && scale.is_finite()).then(|| Self {
-            scale,
-            rotation,
-            shift: middle_to - rotation * middle_from * scale,
-        })
+        Self::turned(scale, rotation, [middle_from, middle_to])
     }
 
     /// The similarity in x and y of least weighted squares that turns about z only, z being scaled
@@ -79,10 +104,15 @@ impl Similarity {
         let scale = math::hypot(along, across) / square;
         let turn = Vector3::z() * math::atan2(across, along);
         let rotation = rotation_from_axis_angle(&turn);
+        Self::turned(scale, rotation, [middle_from, middle_to])
+    }
+
+    /// Of this scale and rotation, from one place to another; `None` of a scale that is none.
+    fn turned(scale: f64, rotation: Rotation3<f64>, [from, to]: [Vector3<f64>; 2]) -> Option<Self> {
         (scale > 0.0 && scale.is_finite()).then(|| Self {
             scale,
             rotation,
-            shift: middle_to - rotation * middle_from * scale,
+            shift: to - rotation * from * scale,
         })
     }
 

@@ -142,12 +142,7 @@ fn rendered(
     });
     let scene = Scene {
         views,
-        origin: Vector3::zeros(),
-        ground_z: None,
-        region: None,
-        known: crate::orienting::known::Known::default(),
-        warnings: Vec::new(),
-        survey: crate::orienting::scene::Survey::default(),
+        ..Scene::default()
     };
     (scene, building.truth.clone())
 }

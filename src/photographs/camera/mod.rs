@@ -28,3 +28,7 @@ pub use two_view::{
     Homography, fundamental, homography_of_plane, plane_of_image_line, transfer_line,
 };
 pub use undistort::undistort;
+
+/// Fewest views of a place that are believed: what two show alike is true only if a third shows it
+/// too (B99 2: multiple images, three or more).
+pub(crate) const FEWEST_VIEWS: usize = 3;

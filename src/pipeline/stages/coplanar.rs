@@ -1,7 +1,7 @@
 //! Coplanar lines and their polygons (B99 2: Leuven; 5).
 
-use super::{Findings, Outcome, Proposals, Results, Stage, StageDefinition};
-use super::{is_any, required, to_bytes, untraced, warn_if};
+use super::{Findings, Outcome, Packing, Proposals, Results, Stage, StageDefinition};
+use super::{is_any, required, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
@@ -20,6 +20,7 @@ impl StageDefinition for Coplanar {
     const SECTION: &'static str = "B99 2, 5";
     const READS: &'static [&'static str] = &["roof.border_nats_per_m"];
     const NEEDS: &'static [Stage] = &[Stage::Segments, Stage::Lines];
+    const PACKING: Option<Packing<Found>> = Some(Found::VALUE);
 
     const PROPOSALS: Proposals<Found> = Some(|found| {
         let verified = (found.value.iter().enumerate()).filter(|(_, set)| set.is_verified());
@@ -40,13 +41,5 @@ impl StageDefinition for Coplanar {
             counts: vec![("sets", found.value.len()), ("verified sets", verified)],
             warnings: warn_if(is_empty && is_any(&before.lines), none),
         }
-    }
-
-    fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&found.value)
-    }
-
-    fn unpack(bytes: &[u8]) -> Option<Found> {
-        untraced(bytes)
     }
 }

@@ -1,6 +1,6 @@
 //! Planes from dense matching (B99 2).
 
-use super::{Findings, Outcome, Proposals, Results, Stage, StageDefinition};
+use super::{Findings, Outcome, Packing, Proposals, Results, Stage, StageDefinition};
 use super::{from_bytes, required, to_bytes};
 use crate::base::execution::Sharded;
 use crate::base::params::{Params, Source};
@@ -21,6 +21,17 @@ impl StageDefinition for Dense {
     const SECTION: &'static str = "B99 2";
     const READS: &'static [&'static str] = &["point_cloud"];
     const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground];
+    const PACKING: Option<Packing<Found>> = Some(Packing {
+        pack: |found| to_bytes(&(&found.value, &found.trace.point_cloud)),
+        unpack: |bytes| {
+            let (planes, point_cloud): (_, Option<CloudComparison>) = from_bytes(bytes)?;
+            let trace = DenseTrace {
+                point_cloud,
+                ..DenseTrace::default()
+            };
+            Some((planes, trace).into())
+        },
+    });
     const PROPOSALS: Proposals<Found> = Some(|found| {
         let planes = found.value.iter().enumerate();
         let of_cloud = found.trace.counted_cloud().into_iter();
@@ -58,18 +69,5 @@ impl StageDefinition for Dense {
                 .into_iter()
                 .collect(),
         }
-    }
-
-    fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&(&found.value, &found.trace.point_cloud))
-    }
-
-    fn unpack(bytes: &[u8]) -> Option<Found> {
-        let (planes, point_cloud): (_, Option<CloudComparison>) = from_bytes(bytes)?;
-        let trace = DenseTrace {
-            point_cloud,
-            ..DenseTrace::default()
-        };
-        Some((planes, trace).into())
     }
 }

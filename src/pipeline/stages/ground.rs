@@ -1,6 +1,6 @@
 //! The height of the ground.
 
-use super::{Findings, Results, Stage, StageDefinition};
+use super::{Findings, Packing, Results, Stage, StageDefinition};
 use super::{from_bytes, required, to_bytes};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
@@ -22,6 +22,10 @@ impl StageDefinition for Ground {
     const SECTION: &'static str = "height of the ground";
     const READS: &'static [&'static str] = &[];
     const NEEDS: &'static [Stage] = &[Stage::Directions, Stage::Clusters, Stage::Lines];
+    const PACKING: Option<Packing<Found>> = Some(Packing {
+        pack: to_bytes,
+        unpack: from_bytes,
+    });
     const SHARD_MAPS: &'static [&'static str] = &["ground"];
 
     fn run(scene: &Scene, _: &Params, before: &Results) -> Sharded<Found> {
@@ -40,13 +44,5 @@ impl StageDefinition for Ground {
             counts: Vec::new(),
             warnings: terrain.into_iter().collect(),
         }
-    }
-
-    fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(found)
-    }
-
-    fn unpack(bytes: &[u8]) -> Option<Found> {
-        from_bytes(bytes)
     }
 }

@@ -1,7 +1,7 @@
 //! Half-planes at the 3D lines (B99 4.1).
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition};
-use super::{is_any, required, to_bytes, untraced, warn_if};
+use super::{Findings, Outcome, Packing, Results, Stage, StageDefinition};
+use super::{is_any, required, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
@@ -20,6 +20,7 @@ impl StageDefinition for HalfPlanes {
     const SECTION: &'static str = "B99 4.1";
     const READS: &'static [&'static str] = &["sweep"];
     const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Ground];
+    const PACKING: Option<Packing<Found>> = Some(Found::VALUE);
     const SHARD_MAPS: &'static [&'static str] = &["sides"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
@@ -41,13 +42,5 @@ impl StageDefinition for HalfPlanes {
             ],
             warnings: warn_if(is_empty && was_swept && is_any(&before.lines), none),
         }
-    }
-
-    fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&found.value)
-    }
-
-    fn unpack(bytes: &[u8]) -> Option<Found> {
-        untraced(bytes)
     }
 }

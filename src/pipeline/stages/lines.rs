@@ -1,7 +1,7 @@
 //! 3D lines (B99 3.2), and with both methods those of the other one.
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition};
-use super::{is_any, required, to_bytes, untraced, warn_if};
+use super::{Findings, Outcome, Packing, Results, Stage, StageDefinition};
+use super::{is_any, required, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::lines::lines3d::{Line3d, LineTrace, reconstruct_lines};
@@ -21,6 +21,7 @@ impl StageDefinition for Lines {
     const SECTION: &'static str = "B99 3.2, fig. 4";
     const READS: &'static [&'static str] = &["lines3d"];
     const NEEDS: &'static [Stage] = &[Stage::Matches, Stage::Regions, Stage::Clusters];
+    const PACKING: Option<Packing<Found>> = Some(Found::VALUE);
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let matches = &required(&before.matches).value;
@@ -41,13 +42,5 @@ impl StageDefinition for Lines {
             counts: vec![("lines", found.value.len())],
             warnings: warn_if(is_empty && is_any(&before.matches), none),
         }
-    }
-
-    fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&found.value)
-    }
-
-    fn unpack(bytes: &[u8]) -> Option<Found> {
-        untraced(bytes)
     }
 }

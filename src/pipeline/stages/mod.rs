@@ -86,9 +86,14 @@ macro_rules! stage_table {
                                 },
                                 is_found: |results| results.$file.is_some(),
                                 discard: |results| results.$file = None,
-                                pack: |results| results.$file.as_ref().map(Definition::pack),
+                                pack: |results| {
+                                    let pack = Definition::PACKING.map(|packing| packing.pack);
+                                    let found = results.$file.as_ref();
+                                    found.map(|found| pack.map_or_else(Vec::new, |pack| pack(found)))
+                                },
                                 unpack: |results, bytes| {
-                                    results.$file = Definition::unpack(bytes);
+                                    let packing = Definition::PACKING;
+                                    results.$file = packing.and_then(|p| (p.unpack)(bytes));
                                     results.$file.is_some()
                                 },
                             }
@@ -161,6 +166,21 @@ impl<V, T> From<(V, T)> for Outcome<V, T> {
 /// How a source makes planes of what it found; `None` for a stage that is no source.
 type Proposals<Found> = Option<fn(&Found) -> Vec<ProposedPlane>>;
 
+/// How a part of a result becomes bytes.
+pub(super) struct Packing<Found> {
+    pack: fn(&Found) -> Vec<u8>,
+    /// The result with that part alone; `None` where the bytes are not that.
+    unpack: fn(&[u8]) -> Option<Found>,
+}
+
+impl<V: Serialize + DeserializeOwned, T: Default> Outcome<V, T> {
+    /// The result without its trace.
+    const VALUE: Packing<Self> = Packing {
+        pack: |found| to_bytes(&found.value),
+        unpack: |bytes| Some((from_bytes(bytes)?, T::default()).into()),
+    };
+}
+
 /// Everything that is particular to one stage.
 pub(super) trait StageDefinition {
     /// What it finds.
@@ -180,6 +200,8 @@ pub(super) trait StageDefinition {
     const TAKES_PROPOSALS: bool = false;
     /// The planes that it proposes for roofs, where it is a source of them.
     const PROPOSALS: Proposals<Self::Found> = None;
+    /// The part of its result that sharded maps of later stages read, where there are any.
+    const PACKING: Option<Packing<Self::Found>> = None;
     /// Its sharded maps, in the order in which they are called.
     const SHARD_MAPS: &'static [&'static str] = &[];
     /// Do its sharded maps read the colours of the views, or grey values only?
@@ -190,16 +212,6 @@ pub(super) trait StageDefinition {
 
     /// What it counted, and what the user should know.
     fn summary(scene: &Scene, found: &Self::Found, before: &Results) -> Findings;
-
-    /// The part of its result that sharded maps of later stages read; nothing where there are none.
-    fn pack(_: &Self::Found) -> Vec<u8> {
-        Vec::new()
-    }
-
-    /// The result with that part alone; `None` where the bytes are not that.
-    fn unpack(_: &[u8]) -> Option<Self::Found> {
-        None
-    }
 }
 
 /// What a stage has to say of its result.
@@ -323,12 +335,4 @@ fn to_bytes<V: Serialize>(value: &V) -> Vec<u8> {
 
 fn from_bytes<V: DeserializeOwned>(bytes: &[u8]) -> Option<V> {
     postcard::from_bytes(bytes).ok()
-}
-
-/// A result from its bytes, without its trace.
-fn untraced<V: DeserializeOwned, T: Default>(bytes: &[u8]) -> Option<Outcome<V, T>> {
-    from_bytes(bytes).map(|value| Outcome {
-        value,
-        trace: T::default(),
-    })
 }

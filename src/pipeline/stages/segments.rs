@@ -1,6 +1,6 @@
 //! Straight image segments in every view (B99 3.2).
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition, to_bytes, untraced};
+use super::{Findings, Outcome, Packing, Results, Stage, StageDefinition};
 use crate::base::execution::{Sharded, sharded_map};
 use crate::base::params::Params;
 use crate::lines::lines2d::{ImageSegment, SegmentTrace, detect_segments};
@@ -19,6 +19,7 @@ impl StageDefinition for Segments {
     const SECTION: &'static str = "B99 3.2";
     const READS: &'static [&'static str] = &["segments"];
     const NEEDS: &'static [Stage] = &[];
+    const PACKING: Option<Packing<Found>> = Some(Found::VALUE);
     const SHARD_MAPS: &'static [&'static str] = &["views"];
     const SHARDS_READ_COLOURS: bool = true;
 
@@ -46,13 +47,5 @@ impl StageDefinition for Segments {
             ],
             warnings: warnings.collect(),
         }
-    }
-
-    fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&found.value)
-    }
-
-    fn unpack(bytes: &[u8]) -> Option<Found> {
-        untraced(bytes)
     }
 }

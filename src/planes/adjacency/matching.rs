@@ -25,10 +25,8 @@ use crate::base::ids::ViewId;
 use crate::base::math::{SIGMA_OVER_MEDIAN, exp, ln, median};
 use crate::base::plan_index::PlanIndex;
 use crate::orienting::scene::Scene;
+use crate::photographs::camera::FEWEST_VIEWS;
 use crate::planes::coplanar::log_normal;
-
-/// A corner that two views show could be any two rays that meet; the third decides.
-const LEAST_VIEWS: usize = 3;
 
 /// The graphs of all views, ready to be searched.
 pub(super) struct GraphSpace<'a> {
@@ -241,7 +239,7 @@ impl<'a> GraphSpace<'a> {
             }
         }
         images.sort_unstable();
-        (images.len() >= LEAST_VIEWS).then_some(images)
+        (images.len() >= FEWEST_VIEWS).then_some(images)
     }
 
     fn sightings(&self, images: &[[u32; 2]]) -> Vec<Sighting<'a>> {
@@ -251,7 +249,7 @@ impl<'a> GraphSpace<'a> {
 
     /// A corner in space from its images, without colours.
     fn judge(&self, images: &[[u32; 2]]) -> Option<SpaceCorner> {
-        (images.len() >= LEAST_VIEWS).then_some(())?;
+        (images.len() >= FEWEST_VIEWS).then_some(())?;
         let seen = self.sightings(images);
         let (at, covariance) = place(self.scene, &seen)?;
         let mut known = seen[..1].to_vec();

@@ -38,6 +38,7 @@ use crate::orienting::known::{
 use crate::planes::grouping::ProposedPlane;
 use crate::planes::photoconsistency::PlanGrid;
 use crate::planes::terrain::Ground;
+use crate::planes::terrain::ROOF_M;
 
 /// A point cloud compared with the images.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -111,7 +112,7 @@ const PATCH_PIXELS: f64 = 0.3;
 /// A shift is named, and taken out, from so many standard deviations on.
 const SIGMAS: f64 = 2.0;
 /// No height or place is known better, metres, whatever is stated.
-const LEAST_SIGMA_M: f64 = 1e-3;
+pub(crate) const LEAST_SIGMA_M: f64 = 1e-3;
 
 /// What dense matching found, for the comparison.
 pub(super) struct Matched<'a> {
@@ -330,8 +331,6 @@ fn agreement(
 
 /// A surface that is something with this probability shows it clearly.
 const SURE: f64 = 0.8;
-/// What stands higher above the ground, metres, is a roof or a tree.
-const ROOF_M: f64 = 2.0;
 
 /// The planes in a cloud above the ground, the largest first.
 fn planes(

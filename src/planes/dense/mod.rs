@@ -20,6 +20,7 @@ mod segmentation;
 mod surface_class;
 mod sweep;
 
+pub(crate) use cloud::LEAST_SIGMA_M;
 pub use cloud::{CloudComparison, CloudPlane};
 pub(crate) use least_rectangle::least_rectangle;
 pub use patch::Patch;

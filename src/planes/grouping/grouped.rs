@@ -1,6 +1,6 @@
 //! The order of grouping: half-planes and lines, propagated half-planes, planes of other sources.
 
-use super::growth::{by_strength, grow, infer_sides, merge_groups};
+use super::growth::{grow_all, infer_sides};
 use super::line_pairs::{add_line_pairs, with_lines_around};
 use super::neighbourhood::{LineNeighbours, line_neighbours};
 use super::plane_group::{GroupingInput, Member, PlaneGroup};
@@ -80,14 +80,8 @@ pub(super) fn group_planes(
     params: &RoofParams,
 ) -> Vec<PlaneGroup> {
     let by_line = half_planes_by_line(input);
-    let mut free = vec![true; input.half_planes.len()];
-    let mut groups = Vec::new();
-    for seed in by_strength(input) {
-        if free[seed.index()] {
-            groups.push(grow(input, &by_line, seed, &mut free, params));
-        }
-    }
-    let mut groups = merge_groups(input, groups, params);
+    let free = vec![true; input.half_planes.len()];
+    let mut groups = grow_all(input, &by_line, free, params);
     if line_pairs {
         add_line_pairs(input, &by_line, &mut groups, params);
     }

@@ -19,6 +19,22 @@ pub(super) fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
     ids
 }
 
+/// Groups that grow from the strongest half-planes that are free, those of one plane merged.
+pub(super) fn grow_all(
+    input: &GroupingInput,
+    by_line: &[Vec<HalfPlaneId>],
+    mut free: Vec<bool>,
+    params: &RoofParams,
+) -> Vec<PlaneGroup> {
+    let mut groups = Vec::new();
+    for seed in by_strength(input) {
+        if free[seed.index()] {
+            groups.push(grow(input, by_line, seed, &mut free, params));
+        }
+    }
+    merge_groups(input, groups, params)
+}
+
 /// The group that grows from a half-plane over those that are still free.
 pub(super) fn grow(
     input: &GroupingInput,

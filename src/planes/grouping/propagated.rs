@@ -5,7 +5,7 @@
 //! that plane. The lines are then grouped as with any half-plane (B99 4.2); each is then tested by
 //! its photo-consistency ([`crate::planes::hypotheses::hypothesis`]).
 
-use super::growth::{by_strength, grow, infer_sides, merge_groups};
+use super::growth::{grow_all, infer_sides};
 use super::plane_group::{GroupingInput, PlaneGroup};
 use crate::base::geometry::Plane;
 use crate::base::ids::{HalfPlaneId, LineId};
@@ -18,7 +18,7 @@ use crate::planes::terrain::Ground;
 const LEAST_LENGTH: f64 = 3.0;
 /// Sine of the least slope that is propagated (6 degrees); level planes need no line that runs
 /// along them.
-const LEAST_SLOPE_SINE: f64 = 0.1;
+pub(crate) const LEAST_SLOPE_SINE: f64 = 0.1;
 /// Sine of the angle (3 degrees) to the horizontal, and to the neighbour's level direction, below
 /// which a line runs along it.
 const ALONG_SINE: f64 = 0.055;
@@ -120,13 +120,7 @@ pub(super) fn group_propagated(input: &GroupingInput, params: &RoofParams) -> Ve
             free[i] = true;
         }
     }
-    let mut groups = Vec::new();
-    for seed in by_strength(input) {
-        if free[seed.index()] {
-            groups.push(grow(input, &by_line, seed, &mut free, params));
-        }
-    }
-    let mut groups = merge_groups(input, groups, params);
+    let mut groups = grow_all(input, &by_line, free, params);
     groups.iter_mut().for_each(|g| infer_sides(input, g));
     groups
 }

@@ -17,7 +17,7 @@ use crate::base::plan_index::PlanIndex;
 use crate::lines::linematch::EDGE_MARGIN_PX;
 use crate::lines::lines2d::ImageSegment;
 use crate::orienting::scene::Scene;
-use crate::photographs::camera::Camera;
+use crate::photographs::camera::{Camera, FEWEST_VIEWS};
 use crate::planes::grouping::PlanRegion;
 
 /// A line in a plane that several views show.
@@ -30,9 +30,7 @@ pub struct PlaneLine {
     pub views: Vec<ViewId>,
 }
 
-/// Views that must show a line, ...
-const MIN_VIEWS: usize = 3;
-/// ... and where no more than these have the place in their image, ...
+/// Fewer views show a line where no more than these have the place in their image, ...
 const FEW: usize = 3;
 /// ... those that must show it there. Measured on rendered scenes: of pairs of segments that meet
 /// by chance one in four lies on a roof's edge where six views could show it, one in two where
@@ -142,7 +140,7 @@ pub(crate) fn lines_in_plane(
             let middle = nalgebra::center(a, b);
             views_containing(scene, &plane.lift(middle.x, middle.y)) <= FEW
         };
-        if views.len() < MIN_VIEWS && !line.as_ref().is_some_and(few) {
+        if views.len() < FEWEST_VIEWS && !line.as_ref().is_some_and(few) {
             continue;
         }
         members.iter().for_each(|&j| used[j] = true);

@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Point2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::base::geometry::Plane;
+use crate::base::math::larger;
 use crate::photographs::camera::Camera;
 use crate::photographs::raster::{Gray, Outside, Warp};
 
@@ -44,6 +45,16 @@ impl PlanGrid {
             width: (c1 - c0).max(1.0) as usize,
             height: (r1 - r0).max(1.0) as usize,
         }
+    }
+
+    /// The same place in the samples in which what is known is laid over a plan.
+    pub(crate) fn in_samples(&self) -> Self {
+        // Finest sample, metres, and most samples.
+        const SAMPLE_M: f64 = 0.25;
+        const MOST_SAMPLES: f64 = 4e6;
+        let size = Vector2::new(self.width as f64, self.height as f64) * self.step;
+        let step = larger(SAMPLE_M, (size.x * size.y / MOST_SAMPLES).sqrt());
+        Self::covering(self.origin, self.origin + size, step)
     }
 
     /// Centre of a cell, metres.

@@ -36,7 +36,7 @@ const MOST_BLOCKS: f64 = 1e6;
 /// Least share of the blocks whose heights are known.
 const LEAST_COVERED: f64 = 0.5;
 /// What stands higher than this above the ground, metres, is a roof or a tree.
-const ROOF_M: f64 = 2.0;
+pub(crate) const ROOF_M: f64 = 2.0;
 /// A rise of this much within a block is a wall of a surface model, not relief, metres.
 const WALL_M: f64 = 1.5;
 /// More walls than this for each high place, and fewer roofs left than this share: a surface model.

@@ -14,6 +14,8 @@ mod given;
 mod surface;
 mod sweep;
 
+pub(crate) use given::ROOF_M;
+
 use common_plane::{MIN_SAMPLES, STANDS_OUT, is_within};
 use nalgebra::{Point2, Point3, Vector2};
 use serde::{Deserialize, Serialize};

@@ -5,6 +5,7 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 use crate::base::execution::{Sharded, sharded_map};
 use crate::base::geometry::Plane;
 use crate::orienting::scene::{Scene, View};
+use crate::photographs::camera::FEWEST_VIEWS;
 use crate::planes::photoconsistency::{PlanGrid, consistency_map};
 
 /// Images are reduced by this factor for the sweep.
@@ -14,8 +15,6 @@ const MAX_LEVELS: usize = 64;
 /// A position counts as matched from this correlation and texture weight on.
 const MIN_CORRELATION: f32 = 0.7;
 const MIN_WEIGHT: f32 = 0.5;
-/// What fewer views see may agree by chance: a third one checks it.
-const LEAST_VIEWS: usize = 3;
 /// The positions around `ends`, which are sorted by height, at which the views agree well between
 /// two heights; metres, local frame.
 pub(super) fn matched_positions(
@@ -71,7 +70,7 @@ pub(super) fn matched_positions(
                         .then(j.cmp(&i))
                 });
             let p = grid.center(column, row);
-            let seen = |z: &f64| views_of(scene, &Point3::new(p.x, p.y, *z)) >= LEAST_VIEWS;
+            let seen = |z: &f64| views_of(scene, &Point3::new(p.x, p.y, *z)) >= FEWEST_VIEWS;
             if let Some(i) = best.filter(|i| seen(&heights[*i])) {
                 let correlation = |i: usize| maps.get(i).map(|m| f64::from(m.correlation(k)));
                 let beside = [i.checked_sub(1).and_then(correlation), correlation(i + 1)];

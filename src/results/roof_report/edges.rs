@@ -19,7 +19,7 @@ use serde::Deserialize;
 use crate::base::geometry::{Segment3, sides};
 use crate::base::ids::FacetId;
 use crate::roofs::model::Facet;
-use crate::roofs::solids::WRITTEN_STEP_M;
+use crate::roofs::solids::{STEP_HEIGHT_M, WRITTEN_STEP_M};
 
 /// An edge is level up to this sine of its angle to the contour lines: 10 degrees. Assumption: the
 /// least angle of a hip to them is some 30.
@@ -27,10 +27,6 @@ const CONTOUR_SINE: f64 = 0.1736;
 
 /// Rises below this are none, metres per metre: 1 degree.
 const FLAT_SLOPE: f64 = 0.0175;
-
-/// Facets whose heights differ by less meet, metres. Assumption: less than the covering and its
-/// battens is no step.
-const STEP_HEIGHT_M: f64 = 0.1;
 
 /// Pieces of an edge turn by less than this sine (1 degree).
 pub(super) const TURN_SINE: f64 = 0.0175;

@@ -32,21 +32,17 @@ use crate::base::evidence::{EvidenceTerm, POINT_CLOUD, nats_where_it_belongs};
 use crate::base::geometry::Plane;
 use crate::base::math::{exp, hypot, larger, ln, normal_density};
 use crate::photographs::raster::mark_inside;
+use crate::planes::dense::LEAST_SIGMA_M;
 use crate::planes::photoconsistency::PlanGrid;
 use crate::planes::terrain::Ground;
 use crate::roofs::model::Facet;
 
-/// Finest sample of the plan, metres, and most samples.
-const SAMPLE_M: f64 = 0.25;
-const MOST_SAMPLES: f64 = 4e6;
 /// A point tells of positions as far away as this, metres, where no other is nearer. Assumption: a
 /// cloud has a point on a square metre; farther ones lie on other surfaces.
 const REACH_M: f64 = 0.75;
 /// Standard deviation of the height of the ground, metres, as the images show it: a few
 /// decimetres.
 const GROUND_SIGMA_M: f64 = 0.3;
-/// No height is known better, metres, whatever is stated.
-const LEAST_SIGMA_M: f64 = 1e-3;
 
 /// A point cloud over the plan of a scene.
 #[derive(Clone, Debug)]
@@ -91,9 +87,8 @@ struct Said {
 impl CloudEvidence {
     /// Lays the cloud over the plan.
     pub(super) fn new(cloud: Arc<PlacedCloud>, ground: &Ground, window: &PlanGrid) -> Self {
-        let size = Vector2::new(window.width as f64, window.height as f64) * window.step;
-        let step = larger(SAMPLE_M, (size.x * size.y / MOST_SAMPLES).sqrt());
-        let grid = PlanGrid::covering(window.origin, window.origin + size, step);
+        let grid = window.in_samples();
+        let step = grid.step;
         let mut nearest = vec![(u32::MAX, REACH_M as f32); grid.width * grid.height];
         let reach = (REACH_M / step).ceil() as isize;
         for (i, p) in cloud.points.iter().enumerate() {

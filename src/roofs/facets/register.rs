@@ -35,9 +35,6 @@ use crate::roofs::model::Facet;
 /// Name of what a register says of a facet.
 pub(crate) const FEATURE: &str = crate::base::evidence::INSIDE_FOOTPRINT;
 
-/// Finest sample of the plan, metres, and most samples.
-const SAMPLE_M: f64 = 0.25;
-const MOST_SAMPLES: f64 = 4e6;
 /// Depths beyond this say what this one does, metres.
 const REACH_M: f64 = 4.0;
 /// A register is moved by at most this, metres. Assumption: more is another place.
@@ -70,9 +67,8 @@ impl<'a> RegisterEvidence<'a> {
         arrangement: &Arrangement,
         window: &PlanGrid,
     ) -> Self {
-        let size = Vector2::new(window.width as f64, window.height as f64) * window.step;
-        let step = larger(SAMPLE_M, (size.x * size.y / MOST_SAMPLES).sqrt());
-        let grid = PlanGrid::covering(window.origin, window.origin + size, step);
+        let grid = window.in_samples();
+        let step = grid.step;
         let mut depths = vec![-REACH_M as f32; grid.width * grid.height];
         let mut is_here = false;
         let reach = Vector2::repeat(REACH_M);

@@ -11,18 +11,15 @@ use nalgebra::{Point2, Point3};
 use crate::base::evidence::HidingTable;
 use crate::base::geometry::{Plane, sides, span};
 use crate::base::ids::ViewId;
-use crate::base::math::{larger, median};
+use crate::base::math::{SIGMA_OVER_MEDIAN, larger, median};
 use crate::orienting::scene::Scene;
+use crate::photographs::camera::FEWEST_VIEWS;
 use crate::photographs::raster::{Gray, colour_at, gaussian_blur, mark_inside};
 use crate::planes::photoconsistency::{MAX_VIEWS, PlanGrid};
 use crate::roofs::model::Facet;
 
-/// Views that must show a place so that most of them tell its colour.
-const LEAST_VIEWS: usize = 3;
 /// Rounds in which the common colours and the exposures of the views follow from each other.
 const EXPOSURE_ROUNDS: usize = 2;
-/// Standard deviation of a normal distribution over the median of its absolute values.
-const SIGMAS_OF_MEDIAN: f64 = 1.4826;
 /// Least standard deviation of a colour, of 255: that of rounding and compression.
 const LEAST_NOISE: f64 = 2.0;
 /// Blur before the gradient of the common colours is taken, cells.
@@ -62,7 +59,7 @@ impl SeenSurface {
             .map(|v| (v, drawn(scene, v, facet, &grid, &inside, hidden)))
             .filter(|(_, colours)| colours.iter().any(|c| !c.is_nan()))
             .collect();
-        if seen.len() < LEAST_VIEWS {
+        if seen.len() < FEWEST_VIEWS {
             return None;
         }
         // Those that show most of it; of equal ones the first.
@@ -240,7 +237,7 @@ fn medians(colours: &[Vec<Vec3>]) -> Vec<Vec3> {
             .map(|view| view[k])
             .filter(|c| !c.is_nan())
             .collect();
-        if shown.len() < LEAST_VIEWS {
+        if shown.len() < FEWEST_VIEWS {
             return Vec3::NAN;
         }
         Vec3::from_array(std::array::from_fn(|c| {
@@ -267,7 +264,7 @@ fn hiding(colours: &[Vec<Vec3>], common: &[Vec3], grid: &PlanGrid) -> Vec<Vec<f3
         .flat_map(|view| (0..common.len()).map(|k| difference(view, k)));
     let mut all: Vec<f64> = all.filter(|d| d.is_finite()).collect();
     let noise = larger(
-        SIGMAS_OF_MEDIAN * median(&mut all).unwrap_or(0.0),
+        SIGMA_OVER_MEDIAN * median(&mut all).unwrap_or(0.0),
         LEAST_NOISE,
     );
     let changes = changes(common, grid);

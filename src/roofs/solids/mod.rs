@@ -34,6 +34,7 @@ mod walls;
 
 pub use overhang::{RIM_M, close_below_overhangs};
 pub use rejection::SolidRejection;
+pub(crate) use sides::STEP_HEIGHT_M;
 pub use sides::{Side, outline_sides};
 pub use soundness::WRITTEN_STEP_M;
 

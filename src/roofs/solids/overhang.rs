@@ -28,7 +28,7 @@ use super::partition::PlanPartition;
 use super::rings::{PlanRegion, regions_from_edges, ring_edges};
 use super::sides::Side;
 use super::soundness::is_sound_as_written;
-use super::walls::{FaceKind, Shell, ShellFace};
+use super::walls::{FaceKind, Shell, ShellFace, upright};
 use crate::base::geometry::{OverlayRule, Plane, Polygon, plan_sides};
 use crate::base::ids::FacetId;
 use crate::roofs::model::{Facet, Solid, SolidFace, Surface, WELD_M};
@@ -119,13 +119,6 @@ impl<'a> Prisms<'a> {
     /// `None` where the ground is not below all of the roof.
     fn new(partition: &'a PlanPartition, parts: &'a [Part], ground: &Plane) -> Option<Self> {
         let tolerances = partition.height_tolerances();
-        let mut at_vertex: BTreeMap<u32, Vec<(f64, usize)>> = BTreeMap::new();
-        for facet in 0..partition.facets.len() {
-            for &v in partition.facets[facet].region.iter().flatten() {
-                let heights = at_vertex.entry(v).or_default();
-                heights.push((partition.height(facet, v), facet));
-            }
-        }
         let mut prisms = Self {
             partition,
             parts,
@@ -133,8 +126,7 @@ impl<'a> Prisms<'a> {
             plan: Vec::new(),
             levels: BTreeMap::new(),
         };
-        for (v, mut heights) in at_vertex {
-            heights.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (v, heights) in partition.heights(0..partition.facets.len()) {
             let p = partition.positions[v as usize];
             let foot = ground.z_at(p.x, p.y);
             let same = |a: &(f64, usize), b: &(f64, usize)| b.0 - a.0 <= tolerances[v as usize];
@@ -279,20 +271,6 @@ fn face(
         kind,
         rings: region.iter().map(ring).collect(),
     }
-}
-
-/// The vertical face between corners at both ends of an edge, if it has an area. Corners of one
-/// plan vertex are numbered upwards.
-fn upright([low_a, low_b]: [u32; 2], [high_a, high_b]: [u32; 2]) -> Option<ShellFace> {
-    let has_area = low_a <= high_a && low_b <= high_b && (low_a, low_b) != (high_a, high_b);
-    has_area.then(|| {
-        let mut ring: Vec<u32> = (low_b..=high_b).collect();
-        ring.extend((low_a..=high_a).rev());
-        ShellFace {
-            kind: FaceKind::Wall,
-            rings: vec![ring],
-        }
-    })
 }
 
 #[cfg(test)]

@@ -161,6 +161,39 @@ impl PlanPartition {
         steepest.iter().map(|g| WELD_M * (1.0 + 2.0 * g)).collect()
     }
 
+    /// Of the vertices of some facets, the heights of these there and their indices, from below.
+    pub(super) fn heights(
+        &self,
+        facets: impl Iterator<Item = usize>,
+    ) -> BTreeMap<u32, Vec<(f64, usize)>> {
+        let mut heights: BTreeMap<u32, Vec<(f64, usize)>> = BTreeMap::new();
+        for facet in facets {
+            for &v in self.facets[facet].region.iter().flatten() {
+                let at_vertex = heights.entry(v).or_default();
+                at_vertex.push((self.height(facet, v), facet));
+            }
+        }
+        for at_vertex in heights.values_mut() {
+            at_vertex.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        }
+        heights
+    }
+
+    /// The facets, their edges led by the vertices at which they are to stop.
+    pub(super) fn led_by(&self, mut stops: impl FnMut((u32, u32)) -> Vec<u32>) -> Vec<PlanFacet> {
+        let mut facets = Vec::with_capacity(self.facets.len());
+        for facet in &self.facets {
+            let mut edges = Vec::new();
+            for edge in facet.region.iter().flat_map(|ring| ring_edges(ring)) {
+                let path = [edge.0].into_iter().chain(stops(edge)).chain([edge.1]);
+                let path: Vec<u32> = path.collect();
+                edges.extend(path.windows(2).map(|w| (w[0], w[1])));
+            }
+            facets.extend(facet.with_regions(regions_from_edges(&edges, &self.positions)));
+        }
+        facets
+    }
+
     /// Puts vertices that lie on an edge into it.
     fn insert_t_junctions(&mut self) {
         // An edge moves by up to WELD_M when a vertex is put in and may meet another one; rarely
@@ -168,18 +201,11 @@ impl PlanPartition {
         for _ in 0..4 {
             let index = PlanIndex::new(self.positions.iter().map(|&p| [p; 2]));
             let mut changed = false;
-            let mut facets = Vec::with_capacity(self.facets.len());
-            for facet in &self.facets {
-                let mut edges = Vec::new();
-                for (a, b) in facet.region.iter().flat_map(|ring| ring_edges(ring)) {
-                    let stops = vertices_on_edge(a, b, &self.positions, &index);
-                    changed |= !stops.is_empty();
-                    let path: Vec<u32> = [a].into_iter().chain(stops).chain([b]).collect();
-                    edges.extend(path.windows(2).map(|w| (w[0], w[1])));
-                }
-                facets.extend(facet.with_regions(regions_from_edges(&edges, &self.positions)));
-            }
-            self.facets = facets;
+            self.facets = self.led_by(|(a, b)| {
+                let stops = vertices_on_edge(a, b, &self.positions, &index);
+                changed |= !stops.is_empty();
+                stops
+            });
             if !changed {
                 break;
             }

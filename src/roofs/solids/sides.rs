@@ -12,7 +12,7 @@ use crate::roofs::model::Facet;
 const TURN_SINE: f64 = 0.02;
 /// Their heights differ by less than this where they meet, metres: a higher roof has eaves, and a
 /// wall, of its own.
-const STEP_HEIGHT_M: f64 = 0.1;
+pub(crate) const STEP_HEIGHT_M: f64 = 0.1;
 
 /// A straight stretch of a building's outline; the building is to its left.
 #[derive(Clone, Debug, PartialEq)]

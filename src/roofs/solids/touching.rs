@@ -11,7 +11,6 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 
 use super::partition::{PlanPartition, Welder};
-use super::rings::{regions_from_edges, ring_edges};
 use crate::base::math::{atan2, sin_cos};
 
 /// The outside is drawn back by so much, metres: corners closer than a millimetre count as one in
@@ -56,20 +55,10 @@ impl PlanPartition {
         }
         let kept = self.clone();
         self.positions = welder.positions.clone();
-        let mut facets = Vec::with_capacity(self.facets.len());
-        for facet in &self.facets {
-            let mut edges = Vec::new();
-            for edge in facet.region.iter().flat_map(|ring| ring_edges(ring)) {
-                let stops = [behind.get(&edge), before.get(&edge)].map(|stop| stop.copied());
-                let path: Vec<u32> = [Some(edge.0), stops[0], stops[1], Some(edge.1)]
-                    .into_iter()
-                    .flatten()
-                    .collect();
-                edges.extend(path.windows(2).map(|w| (w[0], w[1])));
-            }
-            facets.extend(facet.with_regions(regions_from_edges(&edges, &self.positions)));
-        }
-        self.facets = facets;
+        self.facets = self.led_by(|edge| {
+            let stops = [behind.get(&edge), before.get(&edge)];
+            stops.into_iter().flatten().copied().collect()
+        });
         if !self.conflicting().is_empty() {
             self.facets = kept.facets;
         }

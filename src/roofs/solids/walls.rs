@@ -102,23 +102,13 @@ struct Levels {
 
 impl Levels {
     fn new(partition: &PlanPartition, facets: &[usize], tolerances: &[f64], ground_z: f64) -> Self {
-        let mut heights: BTreeMap<u32, Vec<(f64, usize)>> = BTreeMap::new();
-        for &facet in facets {
-            for &v in partition.facets[facet].region.iter().flatten() {
-                heights
-                    .entry(v)
-                    .or_default()
-                    .push((partition.height(facet, v), facet));
-            }
-        }
         let mut levels = Self {
             corners: Vec::new(),
             plan: Vec::new(),
             first: BTreeMap::new(),
             of_facet: BTreeMap::new(),
         };
-        for (v, mut at_vertex) in heights {
-            at_vertex.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (v, at_vertex) in partition.heights(facets.iter().copied()) {
             let p = partition.positions[v as usize];
             let foot = levels.push(v, Point3::new(p.x, p.y, ground_z));
             levels.first.insert(v, foot);
@@ -156,16 +146,21 @@ impl Levels {
         let (top_a, top_b) = (self.top(facet, a), self.top(facet, b));
         let low = |v| other.map_or(self.foot(v), |other| self.top(other, v));
         let (low_a, low_b) = (low(a), low(b));
-        // Corners of one plan vertex are numbered upwards. Roofs that cross were split at the
-        // crossing.
-        let lower = low_a <= top_a && low_b <= top_b && (low_a, low_b) != (top_a, top_b);
-        lower.then(|| {
-            let mut ring: Vec<u32> = (low_b..=top_b).collect();
-            ring.extend((low_a..=top_a).rev());
-            ShellFace {
-                kind: FaceKind::Wall,
-                rings: vec![ring],
-            }
-        })
+        // Roofs that cross were split at the crossing.
+        upright([low_a, low_b], [top_a, top_b])
     }
+}
+
+/// The vertical face between corners at both ends of an edge, if it has an area. Corners of one
+/// plan vertex are numbered upwards.
+pub(super) fn upright([low_a, low_b]: [u32; 2], [high_a, high_b]: [u32; 2]) -> Option<ShellFace> {
+    let has_area = low_a <= high_a && low_b <= high_b && (low_a, low_b) != (high_a, high_b);
+    has_area.then(|| {
+        let mut ring: Vec<u32> = (low_b..=high_b).collect();
+        ring.extend((low_a..=high_a).rev());
+        ShellFace {
+            kind: FaceKind::Wall,
+            rings: vec![ring],
+        }
+    })
 }

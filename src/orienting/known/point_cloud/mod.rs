@@ -28,9 +28,8 @@ use self::ground::GroundPoints;
 use self::header::Header;
 use self::thinned::Thinned;
 use super::height_grid::HeightGrid;
-use super::refusal::refusal;
 use super::system::{Way, WorldSystem};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::orienting::orientation::InputFile;
 
 /// Most points that are read. Assumption: a tile of a square kilometre with a hundred a square
@@ -52,7 +51,7 @@ const NO_SURFACE: [u8; 9] = [3, 4, 5, 7, 13, 14, 15, 16, 18];
 
 /// The points of the ground on a grid.
 pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid> {
-    let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
+    let refuse = |problem: &str, advice: &str| Error::file(&file.path, problem, advice);
     let mut points = GroundPoints::new();
     let mut others: BTreeMap<u8, u64> = BTreeMap::new();
     let count = each_point(file, system, &mut |header, way, record| {
@@ -115,7 +114,7 @@ fn each_point(
     system: &WorldSystem,
     take: &mut dyn FnMut(&Header, &Way, &[u8]),
 ) -> Result<u64> {
-    let damaged = |problem: String| refusal(&file.path, &problem, COPY_AGAIN);
+    let damaged = |problem: String| Error::file(&file.path, problem, COPY_AGAIN);
     let bytes = &file.bytes[..];
     let (header, way) = header_of(file, system)?;
     let records = header.records(bytes);
@@ -163,7 +162,7 @@ fn each_point(
 /// The header of a file whose points are no more than can be read, and the way from them to the
 /// world frame of the scene.
 fn header_of(file: &InputFile, system: &WorldSystem) -> Result<(Header, Way)> {
-    let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
+    let refuse = |problem: &str, advice: &str| Error::file(&file.path, problem, advice);
     let damaged = |problem: String| refuse(&problem, COPY_AGAIN);
     let bytes = &file.bytes[..];
     let header = Header::read(bytes).map_err(damaged)?;

@@ -1,5 +1,6 @@
 //! Points around a scene, as many as are of use: a few in each square of half a metre.
 
+use crate::orienting::orientation::LARGEST_SCENE_M;
 use nalgebra::{Point3, Vector3};
 
 /// Squares in which points are counted, metres. Assumption: half of what tells roofs apart.
@@ -27,7 +28,7 @@ impl Thinned {
 
     /// Adds a point; what is no number or lies outside of the box is left out.
     pub(super) fn push(&mut self, p: Vector3<f64>) {
-        let is_near = |v: f64| v.abs() < FARTHEST_POINT_M;
+        let is_near = |v: f64| v.abs() < LARGEST_SCENE_M;
         let is_inside = (self.within)
             .is_none_or(|[x0, y0, x1, y1]| (x0..=x1).contains(&p.x) && (y0..=y1).contains(&p.y));
         if !(is_inside && p.iter().all(|v| is_near(*v))) {
@@ -69,10 +70,6 @@ impl Thinned {
         }
     }
 }
-
-/// What lies farther from the scene, metres, is another place: single precision holds a
-/// millimetre of what is nearer.
-const FARTHEST_POINT_M: f64 = 10_000.0;
 
 #[cfg(test)]
 mod tests {

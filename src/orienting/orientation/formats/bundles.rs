@@ -10,11 +10,12 @@
 //!   from measured to ideal coordinates, so the series of the inverse is used. `FixedK` in its
 //!   first line states a principal point and two focal lengths.
 
-use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 
-use super::text::{TextLine, data_lines, quoted};
+use super::colmap::rotation_of_quaternion;
+use super::text::{TextLine, data_lines, ends_early, is_number, quoted};
 use crate::base::error::{Error, Result, listed};
-use crate::orienting::orientation::angles::without_rounding;
+use crate::orienting::orientation::angles::{Y_UP, without_rounding};
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 use crate::photographs::camera::Distortion;
 
@@ -27,24 +28,18 @@ pub(crate) fn read_bundler(
 ) -> Result<Vec<Orientation>> {
     let mut lines = data_lines(path, text);
     let count = header(path, lines.next())?;
-    let first = |text: &'_ str| {
-        text.split_whitespace()
-            .next()
-            .unwrap_or_default()
-            .to_owned()
-    };
-    let names: Vec<String> = data_lines(list_path, list)
-        .map(|l| listed_image(l.text).map_or_else(|| first(l.text), str::to_owned))
+    let names: Vec<&str> = data_lines(list_path, list)
+        .map(|line| listed_image(line.text).unwrap_or_else(|| line.fields()[0]))
         .collect();
     if names.len() != count {
-        return Err(Error::File {
-            file: list_path.to_owned(),
-            problem: format!(
+        return Err(Error::file(
+            list_path,
+            format!(
                 "it names {} images, but {path} has {count} cameras",
                 names.len()
             ),
-            advice: "use the list that belongs to it".to_owned(),
-        });
+            "use the list that belongs to it",
+        ));
     }
     let mut found = Vec::new();
     for name in names {
@@ -53,14 +48,13 @@ pub(crate) fn read_bundler(
         if f == 0.0 {
             continue;
         }
-        let axes = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
-        let r = without_rounding(&(axes * Matrix3::from_fn(|i, j| rows[i + 1][j])));
-        let t = axes * Vector3::from(rows[4]);
+        let r = without_rounding(&(Y_UP * Matrix3::from_fn(|i, j| rows[i + 1][j])));
+        let t = Y_UP * Vector3::from(rows[4]);
         let k = Matrix3::from_diagonal(&Vector3::new(f, f, 1.0));
         found.push(Orientation {
             distortion: Distortion::brown([k1, k2, 0.0], [0.0, 0.0]),
             from_middle: true,
-            ..pinhole(&name, &source, k, r, Point3::from(-(r.transpose() * t)))
+            ..pinhole(name, &source, k, r, Point3::from(-(r.transpose() * t)))
         });
     }
     if let Some((path, text)) = points {
@@ -90,7 +84,7 @@ pub(crate) fn listed_image(text: &str) -> Option<&str> {
         let numbers = behind[end..].strip_prefix('"').unwrap_or(&behind[end..]);
         let is_image = ["jpg", "jpeg", "png", "tif", "tiff"].contains(&&*extension)
             && numbers.split_whitespace().count() <= 2
-            && numbers.split_whitespace().all(|f| f.parse::<f64>().is_ok())
+            && numbers.split_whitespace().all(is_number)
             && (numbers.is_empty() || numbers.starts_with(char::is_whitespace));
         is_image.then(|| text[..dot + 1 + end].trim_start_matches('"'))
     })
@@ -107,42 +101,23 @@ pub(crate) fn read_nvm(path: &str, text: &str) -> Result<Vec<Orientation>> {
     let camera = |line: TextLine| {
         let fields = line.fields();
         // The name may hold blanks; the final zero is missing in some files.
-        let is_number = |i: usize| fields[i].parse::<f64>().is_ok();
         let has_zero = fields.len() > 10 && is_zero(fields[fields.len() - 1]);
-        let behind = if has_zero && is_number(fields.len() - 10) {
+        let behind = if has_zero && is_number(fields[fields.len() - 10]) {
             10
         } else {
             9
         };
         let Some(first) = fields.len().checked_sub(behind).filter(|&n| n > 0) else {
-            return Err(line.error(
-                format!("{} fields", fields.len()),
-                "name f qw qx qy qz cx cy cz k 0",
-            ));
+            return Err(line.miscounted(fields.len(), "name f qw qx qy qz cx cy cz k 0"));
         };
         let name = nvm_name(&line, &fields[..first]);
         let v = line.numbers(&fields[first..first + 9], "a camera's number")?;
-        let q = Quaternion::new(v[1], v[2], v[3], v[4]);
-        if (q.norm() - 1.0).abs() > 1e-3 {
-            return Err(line.error(
-                format!("the quaternion has length {:.4}", q.norm()),
-                "a quaternion of length 1",
-            ));
-        }
-        let r = UnitQuaternion::from_quaternion(q)
-            .to_rotation_matrix()
-            .into_inner();
+        let r = rotation_of_quaternion(&line, &v[1..5])?;
         let k = fixed.unwrap_or_else(|| Matrix3::from_diagonal(&Vector3::new(v[0], v[0], 1.0)));
         Ok(Orientation {
             distortion: inverse_of_cubic(v[8]),
             from_middle: fixed.is_none(),
-            ..pinhole(
-                &name,
-                &format!("{path}, line {}", line.number),
-                k,
-                r,
-                Point3::new(v[5], v[6], v[7]),
-            )
+            ..pinhole(&name, &line.place(), k, r, Point3::new(v[5], v[6], v[7]))
         })
     };
     let found: Vec<Orientation> = lines.take(count).map(camera).collect::<Result<_>>()?;
@@ -164,12 +139,7 @@ fn fixed_calibration(line: &TextLine) -> Result<Option<Matrix3<f64>>> {
     let numbers = match fields[1..] {
         [] => return Ok(None),
         ["FixedK", ref numbers @ ..] if (4..=5).contains(&numbers.len()) => numbers,
-        _ => {
-            return Err(line.error(
-                format!("{} fields", fields.len()),
-                "NVM_V3, or NVM_V3 FixedK fx cx fy cy",
-            ));
-        }
+        _ => return Err(line.miscounted(fields.len(), "NVM_V3, or NVM_V3 FixedK fx cx fy cy")),
     };
     let v = line.numbers(numbers, "a number of the calibration")?;
     if v.get(4).is_some_and(|&k| k != 0.0) {
@@ -186,9 +156,7 @@ fn fixed_calibration(line: &TextLine) -> Result<Option<Matrix3<f64>>> {
 /// The name in front of the numbers. VisualSFM writes a quotation mark for each blank, other
 /// programs set the name between two of them, or leave the blanks.
 fn nvm_name(line: &TextLine, fields: &[&str]) -> String {
-    let last = fields[fields.len() - 1];
-    let end = last.as_ptr() as usize - line.text.as_ptr() as usize + last.len();
-    let name = line.text.get(..end).unwrap_or(fields[0]);
+    let name = line.up_to(fields[fields.len() - 1]);
     let inside = name.strip_prefix('"').and_then(|n| n.strip_suffix('"'));
     inside.unwrap_or(name).replace('"', " ")
 }
@@ -229,12 +197,12 @@ fn rows<'a>(
         let line = lines.next().ok_or_else(|| too_short(path))?;
         let fields = line.fields();
         if fields.len() != 3 {
-            return Err(line.error(format!("{} fields", fields.len()), "three numbers"));
+            return Err(line.miscounted(fields.len(), "three numbers"));
         }
         let v = line.numbers(&fields, "a camera's number")?;
         *row = [v[0], v[1], v[2]];
         if i == 0 {
-            source = format!("{path}, line {}", line.number);
+            source = line.place();
         }
     }
     Ok((source, rows))
@@ -244,18 +212,11 @@ fn add_principal_points(path: &str, text: &str, found: &mut [Orientation]) -> Re
     for line in data_lines(path, text) {
         let fields = line.fields();
         // The name may hold blanks: two numbers follow it, or four.
-        let is_number = |f: &&str| f.parse::<f64>().is_ok();
-        let numbers = fields[1..]
-            .iter()
-            .rev()
-            .take(4)
-            .take_while(|f| is_number(f));
+        let last = fields[1..].iter().rev().take(4);
+        let numbers = last.take_while(|field| is_number(field));
         let first = fields.len() - if numbers.count() == 4 { 4 } else { 2 }.min(fields.len());
         if first == 0 {
-            return Err(line.error(
-                format!("{} fields", fields.len()),
-                "image cx cy width height",
-            ));
+            return Err(line.miscounted(fields.len(), "image cx cy width height"));
         }
         let v = line.numbers(&fields[first..first + 2], "a coordinate")?;
         let name = fields[..first].join(" ");
@@ -272,11 +233,7 @@ fn add_principal_points(path: &str, text: &str, found: &mut [Orientation]) -> Re
 }
 
 fn too_short(path: &str) -> Error {
-    Error::File {
-        file: path.to_owned(),
-        problem: "it ends before its last camera".to_owned(),
-        advice: "copy the whole file: its end is missing".to_owned(),
-    }
+    ends_early(path, "it ends before its last camera")
 }
 
 #[cfg(test)]

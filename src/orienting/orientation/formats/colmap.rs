@@ -9,9 +9,10 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
-use super::text::{TextLine, data_lines, lines, quoted};
+use super::text::{TextLine, data_lines, is_number, lines, quoted};
 use crate::base::error::{Error, Result};
-use crate::orienting::orientation::image_orientation::Orientation;
+use crate::orienting::orientation::angles::ROUNDED_DEVIATION;
+use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 use crate::photographs::camera::{Distortion, Projection};
 
 /// Reads the orientations of a model from (path, text) of both files.
@@ -31,11 +32,11 @@ pub(crate) fn read(cameras: (&str, &str), images: (&str, &str)) -> Result<Vec<Or
         }
     }
     if orientations.is_empty() {
-        return Err(Error::File {
-            file: images.0.to_owned(),
-            problem: "it lists no image".to_owned(),
-            advice: "export the model with its images".to_owned(),
-        });
+        return Err(Error::file(
+            images.0,
+            "it lists no image",
+            "export the model with its images",
+        ));
     }
     Ok(orientations)
 }
@@ -55,10 +56,7 @@ fn read_cameras(file: &str, text: &str) -> Result<Cameras> {
     for line in data_lines(file, text) {
         let fields = line.fields();
         if fields.len() < 5 {
-            return Err(line.error(
-                format!("{} fields", fields.len()),
-                "CAMERA_ID MODEL WIDTH HEIGHT PARAMS...",
-            ));
+            return Err(line.miscounted(fields.len(), "CAMERA_ID MODEL WIDTH HEIGHT PARAMS..."));
         }
         let id = line.whole(fields[0], "the camera id")?;
         let size = (
@@ -150,28 +148,19 @@ fn distortion(model: &str, c: &[f64]) -> Option<Distortion> {
 /// Ten fields or more, of which the tenth is a name: a line of points holds numbers only.
 fn is_image_line(line: &TextLine) -> bool {
     let mut fields = line.text.split_whitespace();
-    fields.nth(9).is_some_and(|f| f.parse::<f64>().is_err())
+    fields.nth(9).is_some_and(|f| !is_number(f))
 }
 
 fn read_image(line: &TextLine, lenses: &Cameras, cameras: &str) -> Result<Orientation> {
     let fields = line.fields();
     if fields.len() < 10 {
-        return Err(line.error(
-            format!("{} fields", fields.len()),
-            "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME",
-        ));
+        let expected = "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME";
+        return Err(line.miscounted(fields.len(), expected));
     }
     let q = line.numbers(&fields[1..5], "a quaternion component")?;
     let t = line.numbers(&fields[5..8], "a translation component")?;
     let id = line.whole(fields[8], "the camera id")?;
-    let quaternion = Quaternion::new(q[0], q[1], q[2], q[3]);
-    // Six printed digits leave 1e-6; a thousandth is no quaternion any more.
-    if (quaternion.norm() - 1.0).abs() > 1e-3 {
-        return Err(line.error(
-            format!("the quaternion has length {:.4}", quaternion.norm()),
-            "QW QX QY QZ of length 1",
-        ));
-    }
+    let r = rotation_of_quaternion(line, &q)?;
     let lens = lenses.get(&id).ok_or_else(|| {
         line.error(
             format!("camera {id} is missing in {cameras}"),
@@ -179,21 +168,24 @@ fn read_image(line: &TextLine, lenses: &Cameras, cameras: &str) -> Result<Orient
         )
     })?;
     let lens = lens.as_ref().map_err(Error::clone)?;
-    let r = UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix();
+    let center = Point3::from(-(r.transpose() * Vector3::new(t[0], t[1], t[2])));
     Ok(Orientation {
-        image: after_fields(line.text, 9).to_owned(),
-        source: format!("{}, line {}", line.file, line.number),
-        k: lens.k,
         distortion: lens.distortion,
-        center: Point3::from(-(r.inverse() * Vector3::new(t[0], t[1], t[2]))),
-        r: r.into_inner(),
         size: Some(lens.size),
-        from_middle: false,
-        angles: None,
-        readings: Vec::new(),
-        crop: None,
-        group: None,
+        ..pinhole(after_fields(line.text, 9), &line.place(), lens.k, r, center)
     })
+}
+
+/// The rotation of a quaternion w, x, y, z.
+pub(super) fn rotation_of_quaternion(line: &TextLine, wxyz: &[f64]) -> Result<Matrix3<f64>> {
+    let quaternion = Quaternion::new(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+    // Six printed digits leave 1e-6; a thousandth is no quaternion any more.
+    if (quaternion.norm() - 1.0).abs() > ROUNDED_DEVIATION {
+        let problem = format!("the quaternion has length {:.4}", quaternion.norm());
+        return Err(line.error(problem, "a quaternion w x y z of length 1"));
+    }
+    let rotation = UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix();
+    Ok(rotation.into_inner())
 }
 
 /// What follows the first `count` fields: a name may hold blanks.

@@ -110,10 +110,6 @@ impl<'a> ByteReader<'a> {
     }
 
     fn error(&self, problem: &str) -> Error {
-        Error::File {
-            file: self.path.to_owned(),
-            problem: problem.to_owned(),
-            advice: "export the model again, as text".to_owned(),
-        }
+        Error::file(self.path, problem, "export the model again, as text")
     }
 }

@@ -7,13 +7,14 @@
 //! * Middlebury: name, K, R, t of P = K [R, t]; the centre of the top-left pixel is (0, 0).
 //! * Strecha: one file `NAME.camera` an image: K, a line of zeros, R (`world_from_cam`), C, size.
 
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Matrix3, Point3, RowVector3, Vector3};
 
 use super::projection::decompose;
-use super::text::{TextLine, data_lines};
-use crate::base::error::{Error, Result};
+use super::text::{TextLine, data_lines, ends_early, is_number};
+use crate::base::error::Result;
 use crate::orienting::orientation::angles::without_rounding;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
+use crate::orienting::orientation::input_file::base_name;
 use crate::photographs::camera::Distortion;
 
 /// Reads Pix4D's calibrated camera parameters.
@@ -26,7 +27,7 @@ pub(crate) fn read_pix4d(
     let is_image = |line: &TextLine| {
         let f = line.fields();
         f.len() >= 3
-            && f[..f.len() - 2].iter().any(|f| f.parse::<f64>().is_err())
+            && f[..f.len() - 2].iter().any(|f| !is_number(f))
             && f[f.len() - 2..].iter().all(|f| f.parse::<u32>().is_ok())
     };
     let mut lines = data_lines(path, text)
@@ -43,14 +44,13 @@ pub(crate) fn read_pix4d(
         let tangential = numbers::<2>(path, lines.next())?;
         let center = numbers::<3>(path, lines.next())?;
         let r = matrix(path, &mut lines)?;
-        let source = format!("{path}, line {}", first.number);
         found.push(Orientation {
             distortion: Distortion::brown(radial, tangential),
             size: Some((
                 first.whole(size[0], "the width")?,
                 first.whole(size[1], "the height")?,
             )),
-            ..pinhole(name, &source, k, r, Point3::from(center) + offset)
+            ..pinhole(name, &first.place(), k, r, Point3::from(center) + offset)
         });
     }
     Ok(found)
@@ -69,8 +69,7 @@ pub(crate) fn read_pmatrix(
         let column = Vector3::new(v[3], v[7], v[11]);
         let (k, r, center) = decompose(&m, &column)
             .ok_or_else(|| line.error("its left 3 x 3 part is singular", "P = K [R | -R C]"))?;
-        let source = format!("{path}, line {}", line.number);
-        Ok(pinhole(name, &source, k, r, center + offset))
+        Ok(pinhole(name, &line.place(), k, r, center + offset))
     };
     data_lines(path, text).map(one).collect()
 }
@@ -93,14 +92,8 @@ pub(crate) fn read_middlebury(path: &str, text: &str) -> Result<Vec<Orientation>
         let t = Vector3::from_row_slice(&v[18..]);
         k[(0, 2)] += 0.5;
         k[(1, 2)] += 0.5;
-        let source = format!("{path}, line {}", line.number);
-        Ok(pinhole(
-            name,
-            &source,
-            k,
-            r,
-            Point3::from(-(r.transpose() * t)),
-        ))
+        let center = Point3::from(-(r.transpose() * t));
+        Ok(pinhole(name, &line.place(), k, r, center))
     };
     data_lines(path, text).skip(1).map(one).collect()
 }
@@ -111,19 +104,13 @@ pub(crate) fn read_strecha(path: &str, text: &str) -> Result<Orientation> {
     let k = matrix(path, &mut lines)?;
     numbers::<3>(path, lines.next())?;
     let world_from_cam = matrix(path, &mut lines)?;
-    let center = numbers::<3>(path, lines.next())?;
+    let center = Point3::from(numbers::<3>(path, lines.next())?);
     let [width, height] = numbers::<2>(path, lines.next())?;
-    let name = path.rsplit('/').next().unwrap_or(path);
+    let name = base_name(path);
     let name = name.strip_suffix(".camera").unwrap_or(name);
     Ok(Orientation {
         size: Some((width as u32, height as u32)),
-        ..pinhole(
-            name,
-            path,
-            k,
-            world_from_cam.transpose(),
-            Point3::from(center),
-        )
+        ..pinhole(name, path, k, world_from_cam.transpose(), center)
     })
 }
 
@@ -133,41 +120,24 @@ fn split_name<'a, const N: usize>(
     expected: &str,
 ) -> Result<(&'a str, [&'a str; N])> {
     let fields = line.fields();
-    let wrong = || line.error(format!("{} fields", fields.len()), expected);
+    let wrong = || line.miscounted(fields.len(), expected);
     let (before, behind) = fields.split_last_chunk::<N>().ok_or_else(wrong)?;
     let last = before.last().ok_or_else(wrong)?;
     // A number too many is no part of a name.
-    if before.len() > 1 && last.parse::<f64>().is_ok() {
+    if before.len() > 1 && is_number(last) {
         return Err(wrong());
     }
-    let end = last.as_ptr() as usize - line.text.as_ptr() as usize + last.len();
-    let name = line.text.get(..end).unwrap_or(last);
-    Ok((name.trim_matches('"'), *behind))
+    Ok((line.up_to(last).trim_matches('"'), *behind))
 }
 
 fn matrix<'a>(path: &str, lines: &mut impl Iterator<Item = TextLine<'a>>) -> Result<Matrix3<f64>> {
-    let mut m = Matrix3::zeros();
-    for i in 0..3 {
-        let row = numbers::<3>(path, lines.next())?;
-        (0..3).for_each(|j| m[(i, j)] = row[j]);
-    }
-    Ok(m)
+    let mut row = || Ok(RowVector3::from(numbers::<3>(path, lines.next())?));
+    Ok(Matrix3::from_rows(&[row()?, row()?, row()?]))
 }
 
 /// Exactly N numbers of a line.
 fn numbers<const N: usize>(path: &str, line: Option<TextLine>) -> Result<[f64; N]> {
-    let line = line.ok_or_else(|| Error::File {
-        file: path.to_owned(),
-        problem: "it ends in the middle of a camera".to_owned(),
-        advice: "copy the whole file: its end is missing".to_owned(),
-    })?;
-    let fields: Vec<&str> = line
-        .text
-        .split([' ', '\t', ','])
-        .filter(|f| !f.is_empty())
-        .collect();
-    let wrong = || line.error(format!("{} fields", fields.len()), format!("{N} numbers"));
-    line.numbers(&fields, "a number")?
-        .try_into()
-        .map_err(|_| wrong())
+    let line = line.ok_or_else(|| ends_early(path, "it ends in the middle of a camera"))?;
+    let fields = line.text.split([' ', '\t', ',']).filter(|f| !f.is_empty());
+    line.exactly(&fields.collect::<Vec<_>>(), format!("{N} numbers"))
 }

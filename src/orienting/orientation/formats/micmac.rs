@@ -17,12 +17,13 @@
 //! that each file proves the convention: one that its camera misses by more than a pixel is
 //! refused.
 
-use nalgebra::{Matrix3, Point2, Point3};
+use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use roxmltree::Node;
 
 use super::xml::{XmlReader, child, parse, text_of};
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
+use crate::orienting::orientation::input_file::base_name;
 use crate::photographs::camera::{Camera, Distortion};
 
 /// Reads orientations and interior orientations, (path, text) each, in any order.
@@ -79,10 +80,6 @@ pub(crate) fn image_of(path: &str) -> Option<&str> {
         .strip_suffix(".xml")
 }
 
-fn base_name(path: &str) -> &str {
-    path.rsplit(['/', '\\']).next().unwrap_or(path)
-}
-
 fn orientation(
     path: &str,
     image: &str,
@@ -94,20 +91,16 @@ fn orientation(
     let find = |name: &str| document.descendants().find(|n| n.has_tag_name(name));
     let missing = |name: &str| file.error(document.root_element(), &format!("<{name}> is missing"));
     let exterior = find("Externe").ok_or_else(|| missing("Externe"))?;
-    let center = child(exterior, "Centre").ok_or_else(|| missing("Centre"))?;
+    let center = file.child(exterior, "Centre")?;
     let matrix = find("CodageMatr").ok_or_else(|| missing("CodageMatr"))?;
-    let mut rows = Vec::new();
-    for name in ["L1", "L2", "L3"] {
-        let row = child(matrix, name)
-            .ok_or_else(|| file.error(matrix, &format!("<{name}> is missing")))?;
-        rows.extend(file.numbers::<3>(row)?);
-    }
-    let world_from_cam = Matrix3::from_row_slice(&rows);
+    let row = |name: &str| {
+        file.numbers::<3>(file.child(matrix, name)?)
+            .map(Vector3::from)
+    };
+    let cam_from_world = Matrix3::from_columns(&[row("L1")?, row("L2")?, row("L3")?]);
     if let Some(node) = find("TypeProj").filter(|n| n.text() != Some("eProjStenope")) {
-        return Err(file.error(
-            node,
-            "only central projections (eProjStenope) are supported",
-        ));
+        let problem = "only central projections (eProjStenope) are supported";
+        return Err(file.error(node, problem));
     }
     for name in ["OrIntImaM2C", "OrIntGlob"] {
         if let Some(node) = find(name) {
@@ -124,16 +117,11 @@ fn orientation(
         })?,
         (None, None) => return Err(missing("Interne")),
     };
+    let center = Point3::from(file.numbers::<3>(center)?);
     let found = Orientation {
         distortion: lens.distortion,
         size: Some(lens.size),
-        ..pinhole(
-            image,
-            path,
-            lens.k,
-            world_from_cam.transpose(),
-            Point3::from(file.numbers::<3>(center)?),
-        )
+        ..pinhole(image, path, lens.k, cam_from_world, center)
     };
     if let Some(points) = find("Verif") {
         verify(&file, points, &found)?;
@@ -184,17 +172,12 @@ fn verify(file: &XmlReader, points: Node, found: &Orientation) -> Result<()> {
         let seen = ideal.map(|ideal| lens.measured(&found.k, &ideal));
         let off_px = seen.map_or(f64::INFINITY, |seen| (seen - stated).norm());
         if off_px.is_nan() || off_px > TOLERANCE_PX {
-            let mut refusal = file.error(
-                point,
-                &format!(
-                    "this point lies {off_px:.1} px from where the orientation and its interior \
-                     orientation project it"
-                ),
+            let problem = format!(
+                "this point lies {off_px:.1} px from where the orientation and its interior \
+                 orientation project it"
             );
-            if let Error::Line { expected, .. } = &mut refusal {
-                *expected = "the interior orientation that MicMac computed it with".to_owned();
-            }
-            return Err(refusal);
+            let expected = "the interior orientation that MicMac computed it with";
+            return Err(file.refusal(point, &problem, expected));
         }
     }
     Ok(())
@@ -209,11 +192,7 @@ struct MicmacCamera {
 
 impl MicmacCamera {
     fn read(file: &XmlReader, node: Node) -> Result<Self> {
-        let numbers = |name: &str| {
-            let found = child(node, name)
-                .ok_or_else(|| file.error(node, &format!("<{name}> is missing")))?;
-            file.numbers::<2>(found)
-        };
+        let numbers = |name: &str| file.numbers::<2>(file.child(node, name)?);
         let (pp, size) = (numbers("PP")?, numbers("SzIm")?);
         let f = file.number(node, "F")?;
         if text_of(node, "KnownConv").is_some_and(|c| c != "eConvApero_DistM2C") {

@@ -40,4 +40,17 @@ pub(crate) mod projection;
 mod text;
 pub(crate) mod xml;
 
-pub(crate) use text::{TextLine, data_lines};
+/// Of labelled groups in a file that of this label, else the last one, which is preferred.
+fn of_group<T>(
+    groups: impl IntoIterator<Item = (Option<String>, T)>,
+    label: Option<&str>,
+) -> Option<T> {
+    let mut groups: Vec<(Option<String>, T)> = groups.into_iter().collect();
+    let wanted = groups
+        .iter()
+        .position(|(own, _)| label.is_some() && own.as_deref() == label);
+    let last = groups.len().checked_sub(1)?;
+    Some(groups.swap_remove(wanted.unwrap_or(last)).1)
+}
+
+pub(crate) use text::{TextLine, data_lines, lines};

@@ -10,11 +10,12 @@
 //! interior orientation is in the camera file of the photogrammetric list. Files that were
 //! edited separate by blanks: these are taken where the columns hold no numbers.
 
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Matrix3, Point3};
 
 use super::photogrammetric::{CameraFrame, read_frame};
-use super::text::{TextLine, raw_lines};
-use crate::base::error::{Error, Result};
+use super::text::{TextLine, ends_early, is_number, raw_lines};
+use crate::base::error::Result;
+use crate::orienting::orientation::angles::Y_UP;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 
 /// Columns of a field.
@@ -32,11 +33,7 @@ pub(crate) fn read(
         .collect();
     let photos = lines.chunks(3).map(|records| match records {
         [first, second, third] => photo(&frame, first, second, third),
-        _ => Err(Error::File {
-            file: exterior.0.to_owned(),
-            problem: "it ends in the middle of a photo".to_owned(),
-            advice: "copy the whole file: its end is missing".to_owned(),
-        }),
+        _ => Err(ends_early(exterior.0, "it ends in the middle of a photo")),
     });
     photos.collect()
 }
@@ -62,14 +59,12 @@ fn photo(
     let (image, center) = center(first)?;
     let (a, b) = (elements::<5>(second)?, elements::<4>(third)?);
     let elements: Vec<f64> = a.into_iter().chain(b).collect();
-    let axes = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
-    let r = axes * Matrix3::from_row_slice(&elements).transpose();
+    let r = Y_UP * Matrix3::from_row_slice(&elements).transpose();
     let part = frame.part_of(&image);
-    let source = format!("{}, line {}", first.file, first.number);
     Ok(Orientation {
         size: Some(part.size),
         crop: Some(frame.crop(part)),
-        ..pinhole(&image, &source, frame.k(part), r, center)
+        ..pinhole(&image, &first.place(), frame.k(part), r, center)
     })
 }
 
@@ -84,12 +79,7 @@ fn center(line: &TextLine) -> Result<(String, Point3<f64>)> {
         4 => &fields[1..],
         // The focal length may come between.
         5 => &fields[2..],
-        n => {
-            return Err(line.error(
-                format!("{n} fields"),
-                "photo X Y Z in columns of 16 characters",
-            ));
-        }
+        n => return Err(line.miscounted(n, "photo X Y Z in columns of 16 characters")),
     };
     let v = line.numbers(xyz, "a coordinate")?;
     Ok((fields[0].to_owned(), Point3::new(v[0], v[1], v[2])))
@@ -102,15 +92,8 @@ fn elements<const N: usize>(line: &TextLine) -> Result<[f64; N]> {
         Some(fields) => fields,
         None => line.fields(),
     };
-    let values = line.numbers(&fields, "an element of the matrix")?;
-    let count = values.len();
-    let expected = || {
-        line.error(
-            format!("{count} fields"),
-            format!("{N} numbers in columns of 16 characters"),
-        )
-    };
-    values.try_into().map_err(|_| expected())
+    let expected = format!("{N} numbers in columns of 16 characters");
+    line.exactly(&fields, expected)
 }
 
 /// The fields in these columns; `None` where the line ends before them.
@@ -120,10 +103,6 @@ fn columns<'a>(line: &TextLine<'a>, places: &[usize]) -> Option<Vec<&'a str>> {
         line.text.get(i * WIDTH..end).map(str::trim)
     };
     places.iter().map(field).collect()
-}
-
-fn is_number(field: &str) -> bool {
-    field.parse::<f64>().is_ok()
 }
 
 #[cfg(test)]
@@ -146,10 +125,7 @@ mod tests {
             found[0].center,
             Point3::new(-4321000.1234567, -5432100.1234567, 1234567890.1234)
         );
-        assert_eq!(
-            found[0].r,
-            Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))
-        );
+        assert_eq!(found[0].r, Y_UP);
         assert_eq!(
             (found[0].k[(0, 0)], found[0].k[(0, 2)], found[0].k[(1, 2)]),
             (10000.0, 2000.0, 1500.0)

@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Point3, RowVector3, Vector3};
 use super::text::data_lines;
 use crate::base::error::{Error, Result};
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
+use crate::orienting::orientation::input_file::stem;
 
 /// Reads a matrix; the image has the name of the file.
 pub(crate) fn read(path: &str, text: &str) -> Result<Orientation> {
@@ -16,17 +17,17 @@ pub(crate) fn read(path: &str, text: &str) -> Result<Orientation> {
     for line in data_lines(path, text) {
         let fields = line.fields();
         if fields.len() != 4 || rows.len() == 3 {
-            return Err(line.error(
-                format!("{} fields in data line {}", fields.len(), rows.len() + 1),
-                "three lines of four numbers",
-            ));
+            let problem = format!("{} fields in data line {}", fields.len(), rows.len() + 1);
+            return Err(line.error(problem, "three lines of four numbers"));
         }
         rows.push(line.numbers(&fields, "an element")?);
     }
-    let refuse = |problem: &str| Error::File {
-        file: path.to_owned(),
-        problem: problem.to_owned(),
-        advice: "write the 3 x 4 matrix P = K [R | -R C] on three lines".to_owned(),
+    let refuse = |problem: &str| {
+        Error::file(
+            path,
+            problem,
+            "write the 3 x 4 matrix P = K [R | -R C] on three lines",
+        )
     };
     if rows.len() != 3 {
         return Err(refuse(&format!("{} lines of numbers", rows.len())));
@@ -38,11 +39,6 @@ pub(crate) fn read(path: &str, text: &str) -> Result<Orientation> {
     k[(0, 2)] += 0.5;
     k[(1, 2)] += 0.5;
     Ok(pinhole(stem(path), path, k, r, center))
-}
-
-fn stem(path: &str) -> &str {
-    let name = path.rsplit('/').next().unwrap_or(path);
-    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
 /// `[M | m] ~ K [R | -R C]` with K upper triangular of positive diagonal and `K[(2, 2)] = 1`:

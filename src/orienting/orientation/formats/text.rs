@@ -23,13 +23,24 @@ impl<'a> TextLine<'a> {
         self.text.is_empty() || self.text.starts_with('#')
     }
 
+    /// Its file and number, for messages.
+    pub(crate) fn place(&self) -> String {
+        format!("{}, line {}", self.file, self.number)
+    }
+
+    /// The text up to the end of one of its fields: a name may hold blanks.
+    pub(crate) fn up_to(&self, field: &str) -> &'a str {
+        let end = field.as_ptr() as usize - self.text.as_ptr() as usize + field.len();
+        self.text.get(..end).unwrap_or(self.text)
+    }
+
+    /// An error about the number of fields.
+    pub(crate) fn miscounted(&self, fields: usize, expected: impl Into<String>) -> Error {
+        self.error(format!("{fields} fields"), expected)
+    }
+
     pub(crate) fn error(&self, problem: impl Into<String>, expected: impl Into<String>) -> Error {
-        Error::Line {
-            file: self.file.to_owned(),
-            line: self.number,
-            problem: problem.into(),
-            expected: expected.into(),
-        }
+        Error::line(self.file, self.number, problem, expected)
     }
 
     /// A finite number.
@@ -48,6 +59,17 @@ impl<'a> TextLine<'a> {
         fields.iter().map(|f| self.number(f, what)).collect()
     }
 
+    /// As many finite numbers as are wanted, one a field.
+    pub(crate) fn exactly<const N: usize>(
+        &self,
+        fields: &[&str],
+        expected: impl Into<String>,
+    ) -> Result<[f64; N]> {
+        let numbers = self.numbers(fields, "a number")?;
+        let wrong = |numbers: Vec<f64>| self.miscounted(numbers.len(), expected);
+        numbers.try_into().map_err(wrong)
+    }
+
     /// A whole number that fits 32 bits.
     pub(crate) fn whole(&self, field: &str, what: &str) -> Result<u32> {
         field.parse().map_err(|_| {
@@ -61,14 +83,10 @@ impl<'a> TextLine<'a> {
 
 /// All lines of a file, empty ones and comments included.
 pub(crate) fn lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = TextLine<'a>> {
-    text.trim_start_matches('\u{feff}')
-        .lines()
-        .enumerate()
-        .map(move |(i, line)| TextLine {
-            file,
-            number: i + 1,
-            text: line.trim(),
-        })
+    raw_lines(file, text).map(|line| TextLine {
+        text: line.text.trim_start(),
+        ..line
+    })
 }
 
 /// Lines as they are, for files whose columns count.
@@ -88,21 +106,33 @@ pub(crate) fn data_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item
     lines(file, text).filter(|line| !line.is_empty())
 }
 
+/// Is a field a number with a decimal point?
+pub(super) fn is_number(field: &str) -> bool {
+    field.parse::<f64>().is_ok()
+}
+
+/// The refusal of a file whose end is missing.
+pub(super) fn ends_early(file: &str, problem: &str) -> Error {
+    Error::file(file, problem, "copy the whole file: its end is missing")
+}
+
 /// A longer text from elsewhere in one line, shortened.
 pub(crate) fn quoted_long(text: &str) -> String {
     // Assumption: some three lines of a message.
     const MOST_CHARACTERS: usize = 200;
-    let short: String = text.chars().take(MOST_CHARACTERS).collect();
-    let dots = if short.len() < text.len() { "..." } else { "" };
     // A semicolon would end the problem and begin the advice.
-    format!("{short}{dots}")
+    shortened(text, MOST_CHARACTERS)
         .replace(['\n', '\r'], " ")
         .replace("; ", ", ")
 }
 
 /// A field in quotation marks, shortened: files may hold anything.
 pub(crate) fn quoted(field: &str) -> String {
-    let short: String = field.chars().take(40).collect();
-    let dots = if short.len() < field.len() { "..." } else { "" };
-    format!("\"{short}{dots}\"")
+    format!("\"{}\"", shortened(field, 40))
+}
+
+fn shortened(text: &str, most_characters: usize) -> String {
+    let short: String = text.chars().take(most_characters).collect();
+    let dots = if short.len() < text.len() { "..." } else { "" };
+    format!("{short}{dots}")
 }

@@ -9,8 +9,8 @@ use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use crate::base::error::{Error, listed};
 use crate::base::geometry::{bounds, mean_point};
 use crate::base::plan_index::PlanIndex;
-use crate::orienting::orientation::EXACT_ROTATION;
-use crate::photographs::camera::Camera;
+use crate::orienting::orientation::{EXACT_ROTATION, LARGEST_SCENE_M};
+use crate::photographs::camera::{Camera, FEWEST_VIEWS};
 
 /// What the cameras give reason to refuse or to warn of.
 #[derive(Default)]
@@ -22,10 +22,6 @@ pub(crate) struct CameraChecks {
     pub heights: Option<[f64; 2]>,
 }
 
-/// Coordinates beyond this, metres, are those of a map, of which an origin is taken off.
-/// Assumption: no scene is as large.
-const MAP_COORDINATE_M: f64 = 10_000.0;
-
 /// Grid of the origin, metres: whole hundreds are easy to add.
 const ORIGIN_GRID_M: f64 = 100.0;
 
@@ -33,7 +29,7 @@ const ORIGIN_GRID_M: f64 = 100.0;
 /// coordinates are large; else zero. Heights are small everywhere and stay what they are.
 pub(crate) fn scene_origin<'a>(cameras: impl Iterator<Item = &'a Camera>) -> Vector3<f64> {
     let centers: Vec<Point3<f64>> = cameras.map(|c| c.center).collect();
-    let is_large = |c: &Point3<f64>| c.x.abs() > MAP_COORDINATE_M || c.y.abs() > MAP_COORDINATE_M;
+    let is_large = |c: &Point3<f64>| c.x.abs() > LARGEST_SCENE_M || c.y.abs() > LARGEST_SCENE_M;
     if !centers.iter().any(is_large) {
         return Vector3::zeros();
     }
@@ -73,15 +69,9 @@ pub(crate) fn check_cameras(cameras: &[(&str, &Camera)], ground_z: Option<f64>) 
 
 /// Is the camera above the ground, looking down?
 fn placement_error(name: &str, camera: &Camera, ground_z: Option<f64>) -> Option<Error> {
-    let refuse = |problem: String, advice: &str| {
-        Some(Error::File {
-            file: name.to_owned(),
-            problem,
-            advice: advice.to_owned(),
-        })
-    };
+    let refuse = |problem: String, advice: &str| Some(Error::file(name, problem, advice));
     let z = camera.center.z;
-    if z.abs() > MAP_COORDINATE_M {
+    if z.abs() > LARGEST_SCENE_M {
         return refuse(
             format!("its camera is {z:.0} m high"),
             "metres with Z up are needed: map or local coordinates, or geocentric ones throughout",
@@ -111,7 +101,7 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
     let mut most_seen = vec![1; cameras.len()];
     for &z in &heights {
         let counts = views_together(&cameras_only, z);
-        if counts.iter().any(|&n| n >= LEAST_VIEWS) {
+        if counts.iter().any(|&n| n >= FEWEST_VIEWS) {
             let [low, high] = found.heights.unwrap_or([z, z]);
             found.heights = Some([low.min(z), high.max(z)]);
         }
@@ -119,21 +109,17 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
             *most = n.max(*most);
         }
     }
-    let alone = || (0..cameras.len()).filter(|&i| most_seen[i] < LEAST_VIEWS);
+    let alone = || (0..cameras.len()).filter(|&i| most_seen[i] < FEWEST_VIEWS);
     if found.heights.is_none() {
         let place = match ground_z {
             Some(z) => format!("at the ground height {z:.1} m"),
             None => "at any height of the ground".to_owned(),
         };
-        found.errors.push(Error::Scene {
-            problem: format!(
-                "the views do not overlap: no three of them see the same place {place}"
-            ),
-            advice:
-                "check that images and orientations belong together (names, unit and order of the \
-                     angles, the same coordinate system)"
-                    .to_owned(),
-        });
+        found.errors.push(Error::scene(
+            format!("the views do not overlap: no three of them see the same place {place}"),
+            "check that images and orientations belong together (names, unit and order of the \
+                     angles, the same coordinate system)",
+        ));
     } else if alone().next().is_some() {
         found.warnings.push(format!(
             "views that see no place together with two others: {}",
@@ -145,13 +131,10 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
 /// A point this far outside an image still counts as seen, pixels: rounding.
 const BORDER_PX: f64 = 0.5;
 
-/// Views that must show a place: a line match in two cannot be verified without a third.
-pub(in crate::orienting::scene_loader) const LEAST_VIEWS: usize = 3;
-
 /// Samples along each side of an image for the overlap.
 const GRID: u32 = 4;
 
-/// For each view, the greatest number of views (itself included; counted up to [`LEAST_VIEWS`],
+/// For each view, the greatest number of views (itself included; counted up to [`FEWEST_VIEWS`],
 /// which is all that matters) that see one of its sample points on the ground at height `z`.
 fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
     let footprints = PlanIndex::new(cameras.iter().map(|camera| footprint(camera, z)));
@@ -163,13 +146,13 @@ fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
                 let near = near.map(|i| cameras[i as usize]);
                 let sees =
                     |c: &&Camera| (c.project(world)).is_some_and(|p| c.contains(&p, -BORDER_PX));
-                near.filter(sees).take(LEAST_VIEWS).count()
+                near.filter(sees).take(FEWEST_VIEWS).count()
             };
             let mut most = 0;
             for world in samples(camera).filter_map(|p| camera.at_height(&p, z)) {
                 most = most.max(seen_by(&world));
                 // No place counts for more; of a flight the first ones do.
-                if most == LEAST_VIEWS {
+                if most == FEWEST_VIEWS {
                     break;
                 }
             }

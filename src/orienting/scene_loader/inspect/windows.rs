@@ -3,7 +3,6 @@
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
-use super::super::checks::camera_checks::LEAST_VIEWS;
 use super::super::decode::needed;
 use super::super::ground::{pixel_in_the_middle, unreduced_plan};
 use super::super::input::LoadOptions;
@@ -12,7 +11,7 @@ use super::super::planned_view::PlannedView;
 use crate::base::error::{Error, Result};
 use crate::base::math::{larger, smaller};
 use crate::orienting::orientation::InputFile;
-use crate::photographs::camera::Camera;
+use crate::photographs::camera::{Camera, FEWEST_VIEWS};
 
 /// Places along the longer side of the area at which the views are counted.
 const PLACES: u32 = 200;
@@ -69,9 +68,11 @@ impl ShownArea {
             return Err(error.clone());
         }
         let shown = ground.and_then(|heights| Self::of_plan(&plan, heights));
-        shown.ok_or_else(|| Error::Scene {
-            problem: "the cameras do not tell which area three of them show".to_owned(),
-            advice: "give the region of interest (--roi x0,y0,x1,y1)".to_owned(),
+        shown.ok_or_else(|| {
+            Error::scene(
+                "the cameras do not tell which area three of them show",
+                "give the region of interest (--roi x0,y0,x1,y1)",
+            )
         })
     }
 
@@ -132,7 +133,7 @@ pub(crate) fn shown_places(cameras: &[&Camera], z: f64) -> (Vec<Point2<f64>>, f6
         let is_shown = |p: &Point2<f64>| {
             let place = Point3::new(p.x, p.y, z);
             let showing = cameras.iter().filter(|c| shows(c, &place, coarsest));
-            showing.take(LEAST_VIEWS).count() == LEAST_VIEWS
+            showing.take(FEWEST_VIEWS).count() == FEWEST_VIEWS
         };
         places.filter(is_shown).collect()
     };

@@ -6,6 +6,7 @@ use crate::orienting::orientation::{InputFile, Orientation};
 use crate::orienting::scene_loader::assignment::{
     Ambiguity, Assignment, LeftOut, assign, assign_in_order,
 };
+use crate::photographs::camera::FEWEST_VIEWS;
 
 impl Plan {
     /// Gives each image its orientation; what is left over is named.
@@ -41,7 +42,7 @@ impl Plan {
         let unclear = found.ambiguous.iter();
         errors.extend(unclear.map(|same| ambiguous(same, &orientations, &paths)));
         let left = LeftOver::of(&found, &orientations, &paths);
-        if left.oriented < 3 && errors.is_empty() && !left.images.is_empty() {
+        if left.oriented < FEWEST_VIEWS && errors.is_empty() && !left.images.is_empty() {
             errors.push(too_few_oriented(
                 left.oriented,
                 &left.images,
@@ -125,19 +126,18 @@ fn ambiguous(same: &Ambiguity, orientations: &[Orientation], paths: &[&str]) -> 
     let images: Vec<&str> = same.images.iter().map(|&i| paths[i]).collect();
     let sources = listed((same.orientations.iter()).map(|&i| &*orientations[i].source));
     match images[..] {
-        [one] => Error::File {
-            file: one.to_owned(),
-            problem: format!("two orientations are called like the image ({sources})"),
-            advice: "remove one of them".to_owned(),
-        },
-        _ => Error::Scene {
-            problem: format!(
+        [one] => Error::file(
+            one,
+            format!("two orientations are called like the image ({sources})"),
+            "remove one of them",
+        ),
+        _ => Error::scene(
+            format!(
                 "{} have the same name, and nothing tells which of them belongs to {sources}",
                 images.join(" and ")
             ),
-            advice: "rename or remove one, or give them the folders that the orientation states"
-                .to_owned(),
-        },
+            "rename or remove one, or give them the folders that the orientation states",
+        ),
     }
 }
 
@@ -147,8 +147,8 @@ fn too_few_oriented(oriented: usize, without: &[&str], unused: &[&str], label: &
         true => String::new(),
         false => format!(" (it names {})", listed(unused.iter())),
     };
-    Error::Scene {
-        problem: format!(
+    Error::scene(
+        format!(
             "{oriented} {} an orientation in {label}, but three are needed: none for {}{named}",
             if oriented == 1 {
                 "image has"
@@ -157,7 +157,6 @@ fn too_few_oriented(oriented: usize, without: &[&str], unused: &[&str], label: &
             },
             listed(without.iter())
         ),
-        advice: "add the orientation of the others, or give the images the names that it states"
-            .to_owned(),
-    }
+        "add the orientation of the others, or give the images the names that it states",
+    )
 }

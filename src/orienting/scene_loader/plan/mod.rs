@@ -25,6 +25,7 @@ use crate::orienting::scene::Survey;
 use crate::photographs::raster::image_header;
 
 /// Everything about a scene but its pixels.
+#[derive(Default)]
 pub(crate) struct Plan {
     /// What each file is.
     pub kinds: Vec<FileKind>,
@@ -70,21 +71,7 @@ impl Plan {
     ) -> Self {
         let mut plan = Self {
             kinds: kinds_of(files, options),
-            images: Vec::new(),
-            orientation: None,
-            candidates: Vec::new(),
-            views: Vec::new(),
-            origin: Vector3::zeros(),
-            survey: Survey::default(),
-            height_unit: None,
-            peak_bytes: 0,
-            warnings: Vec::new(),
-            placement_warnings: Vec::new(),
-            is_cut_later: false,
-            is_chosen: false,
-            errors: Vec::new(),
-            is_implausible: false,
-            unless_agreed: None,
+            ..Self::default()
         };
         plan.find_images(files, options);
         if let Some(orientations) = plan.choose_orientation(files, options) {
@@ -110,26 +97,22 @@ impl Plan {
             images = self.select(files, &images, wanted);
         }
         if images.is_empty() && self.errors.is_empty() {
-            self.errors.push(Error::Scene {
-                problem: match files.len() {
+            self.errors.push(Error::scene(
+                match files.len() {
                     1 => "the one file that was given is no image".to_owned(),
                     count => format!("there is no image among the {count} files"),
                 },
-                advice: "add three or more JPEG, PNG or TIFF images".to_owned(),
-            });
+                "add three or more JPEG, PNG or TIFF images",
+            ));
         }
         let headers = crate::base::execution::map(&images, |_, &i| {
             image_header(&files[i].path, files[i].content())
         });
         for (file, header) in images.into_iter().zip(headers) {
-            let (header, unreadable) = match header {
-                Ok(header) => (Some(header), None),
-                Err(error) => (None, Some(error)),
-            };
             self.images.push(PlannedImage {
                 file,
-                header,
-                unreadable,
+                unreadable: header.as_ref().err().cloned(),
+                header: header.ok(),
                 orientation: None,
             });
         }
@@ -143,13 +126,11 @@ impl Plan {
         for name in wanted {
             let called = images_called(name, &paths);
             if called.is_empty() {
-                self.errors.push(Error::Scene {
-                    problem: format!("there is no image called {name}"),
-                    advice: format!(
-                        "choose among {}",
-                        listed(images.iter().map(|&i| files[i].name()))
-                    ),
-                });
+                let all = listed(images.iter().map(|&i| files[i].name()));
+                self.errors.push(Error::scene(
+                    format!("there is no image called {name}"),
+                    format!("choose among {all}"),
+                ));
             }
             chosen.extend(called);
         }
@@ -165,16 +146,10 @@ impl Plan {
         let (sets, incomplete) = orientation_sets(files, &self.kinds);
         self.warn_of_json(files);
         self.candidates = OrientationCandidate::of(&sets, files);
-        let Some(Choice { set: index, group }) =
-            choose(&sets, files, options.orientation.as_deref())
-        else {
-            self.errors.push(no_orientation(
-                files,
-                &self.kinds,
-                options,
-                &sets,
-                &incomplete,
-            ));
+        let wanted = options.orientation.as_deref();
+        let Some(Choice { set: index, group }) = choose(&sets, files, wanted) else {
+            let error = no_orientation(files, &self.kinds, options, &sets, &incomplete);
+            self.errors.push(error);
             return None;
         };
         let set = &sets[index];
@@ -194,11 +169,8 @@ impl Plan {
         let images = self.image_candidates(files);
         let taken = take_group(orientations, group.as_deref(), &images);
         self.warnings.extend(taken.warning(&set.label(files)));
-        if let Some(taken) = &taken.group {
-            self.orientation = self
-                .orientation
-                .take()
-                .map(|label| format!("{label}: {taken}"));
+        if let (Some(label), Some(taken)) = (&mut self.orientation, &taken.group) {
+            *label = format!("{label}: {taken}");
         }
         let is_stated = options.epsg.is_some();
         let group = taken.group.as_deref();
@@ -222,13 +194,13 @@ impl Plan {
         let is_degrees = stated.is_some_and(is_geographic);
         let Some(anchor) = to_metric_frame(orientations, is_degrees) else {
             match stated {
-                Some(code) if is_degrees => self.errors.push(Error::Scene {
-                    problem: format!(
+                Some(code) if is_degrees => self.errors.push(Error::scene(
+                    format!(
                         "EPSG:{code} is longitude and latitude, and the positions of the cameras \
                          are none"
                     ),
-                    advice: "state the system that they are in (--crs EPSG:N)".to_owned(),
-                }),
+                    "state the system that they are in (--crs EPSG:N)",
+                )),
                 Some(code) => self.count_feet_in_metres(code, orientations),
                 None => {}
             }
@@ -248,10 +220,8 @@ impl Plan {
     /// Positions in the unit of a code become metres in the same plane.
     fn count_feet_in_metres(&mut self, code: u32, orientations: &mut [Orientation]) {
         let unit = linear_unit_of_code(code).unwrap_or_default();
-        let heights = self
-            .height_unit
-            .or(height_unit_of_code(code))
-            .unwrap_or(unit);
+        let heights = self.height_unit.or(height_unit_of_code(code));
+        let heights = heights.unwrap_or(unit);
         if unit.is_metre() && heights.is_metre() {
             return;
         }
@@ -261,15 +231,12 @@ impl Plan {
             plane_of(code)
         };
         if linear_unit_of_code(metric).is_none_or(|unit| !unit.is_metre()) {
-            self.errors.push(Error::Scene {
-                problem: format!(
-                    "EPSG:{code} is in {}, and no other code has the same plane in metres",
-                    unit.words()
-                ),
-                advice: "convert the orientation to a system in metres, or multiply its positions \
-                         by the metres of the unit and leave the system unstated"
-                    .to_owned(),
-            });
+            let unit = unit.words();
+            self.errors.push(Error::scene(
+                format!("EPSG:{code} is in {unit}, and no other code has the same plane in metres"),
+                "convert the orientation to a system in metres, or multiply its positions \
+                         by the metres of the unit and leave the system unstated",
+            ));
             return;
         }
         for orientation in orientations.iter_mut() {
@@ -381,17 +348,13 @@ impl Plan {
             return;
         };
         if !unit.is_metre() && self.errors.is_empty() {
-            self.errors.push(Error::File {
-                file: file.path.clone(),
-                problem: format!(
-                    "it states coordinates in {}, of a system without a code",
-                    unit.words()
-                ),
-                advice:
-                    "state the system of the orientation (--crs EPSG:N), or leave the file out \
-                         (--without) if it is of something else"
-                        .to_owned(),
-            });
+            let unit = unit.words();
+            self.errors.push(Error::file(
+                &file.path,
+                format!("it states coordinates in {unit}, of a system without a code"),
+                "state the system of the orientation (--crs EPSG:N), or leave the file out \
+                         (--without) if it is of something else",
+            ));
         }
     }
 
@@ -427,13 +390,11 @@ fn no_orientation(
     incomplete: &[String],
 ) -> Error {
     if let (Some(wanted), false) = (&options.orientation, sets.is_empty()) {
-        return Error::Scene {
-            problem: format!("no orientation file has {wanted} in its path"),
-            advice: format!(
-                "choose among {}",
-                listed(sets.iter().map(|s| s.label(files)))
-            ),
-        };
+        let all = listed(sets.iter().map(|s| s.label(files)));
+        return Error::scene(
+            format!("no orientation file has {wanted} in its path"),
+            format!("choose among {all}"),
+        );
     }
     let mut problem = "no orientation was found".to_owned();
     let unread: Vec<(&InputFile, &UnreadFormat)> = (files.iter().zip(kinds))
@@ -445,31 +406,25 @@ fn no_orientation(
     };
     let mut reasons = incomplete.to_vec();
     // Their advice differs: of many files of one format one is named.
-    let mut formats: Vec<&str> = Vec::new();
-    for found in &unread {
-        if !formats.contains(&found.1.name) {
-            formats.push(found.1.name);
-            reasons.push(known(found));
-        }
-    }
+    let mut formats = BTreeSet::new();
+    let first = unread
+        .iter()
+        .filter(|(_, format)| formats.insert(format.name));
+    reasons.extend(first.map(known));
     if !reasons.is_empty() {
         problem = format!("{problem}: {}", reasons.join("; "));
     }
     if let (Some((_, format)), true) = (unread.first(), incomplete.is_empty()) {
-        return Error::Scene {
-            problem,
-            advice: format.advice.to_owned(),
-        };
+        return Error::scene(problem, format.advice);
     }
     if reasons.is_empty() {
         problem.push_str(" (a position in the header of a photograph does not orient it)");
     }
-    Error::Scene {
+    Error::scene(
         problem,
-        advice: "add the orientation as COLMAP, Metashape, BlocksExchange, Pix4D, OpenSfM or Bundler write it, a camera \
-                 file with a list `image X0 Y0 Z0 omega phi kappa`, or one 3 x 4 matrix NAME.P an image"
-            .to_owned(),
-    }
+        "add the orientation as COLMAP, Metashape, BlocksExchange, Pix4D, OpenSfM or Bundler write it, a camera \
+                 file with a list `image X0 Y0 Z0 omega phi kappa`, or one 3 x 4 matrix NAME.P an image",
+    )
 }
 
 /// A mask, perhaps: a photograph in grey values alone is rarely a PNG.

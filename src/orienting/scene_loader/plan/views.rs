@@ -12,7 +12,7 @@ use crate::orienting::scene_loader::memory;
 use crate::orienting::scene_loader::names::view_names;
 use crate::orienting::scene_loader::planned_view::{PlannedView, planned_view};
 use crate::orienting::scene_loader::region::RegionOfInterest;
-use crate::photographs::camera::Camera;
+use crate::photographs::camera::{Camera, FEWEST_VIEWS};
 
 impl Plan {
     /// Forms views in the local frame and checks them together.
@@ -23,10 +23,10 @@ impl Plan {
         ground: Option<[f64; 2]>,
     ) {
         let mut views = self.views_of_images(files, options);
-        if views.len() < 3 && self.errors.is_empty() {
+        if views.len() < FEWEST_VIEWS && self.errors.is_empty() {
             self.errors.push(too_few(files, &views));
         }
-        if views.len() < 3 {
+        if views.len() < FEWEST_VIEWS {
             self.views = views;
             return;
         }
@@ -156,14 +156,13 @@ fn notice_of_reduction(options: &LoadOptions) -> Option<String> {
 }
 
 fn too_few(files: &[InputFile], views: &[PlannedView]) -> Error {
-    Error::Scene {
-        problem: format!(
+    Error::scene(
+        format!(
             "{} oriented {} ({}), but three are needed",
             views.len(),
             if views.len() == 1 { "view" } else { "views" },
             listed(views.iter().map(|v| files[v.file].name()))
         ),
-        advice: "add images with their orientation: what two show alike is true only if a third shows it too"
-            .to_owned(),
-    }
+        "add images with their orientation: what two show alike is true only if a third shows it too",
+    )
 }

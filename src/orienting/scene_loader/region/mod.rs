@@ -7,14 +7,15 @@
 mod detail;
 mod view_choice;
 
-use nalgebra::{Point2, Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::checks::camera_checks;
 use super::planned_view::{PlannedView, SMALLEST_SIDE_PX, offset_calibration};
 use crate::base::error::{Error, Result, listed};
+use crate::base::geometry::bounds;
 use crate::orienting::orientation::InputFile;
 use crate::orienting::scene::Scene;
-use crate::photographs::camera::{Camera, Distortion};
+use crate::photographs::camera::{Camera, Distortion, FEWEST_VIEWS};
 use crate::photographs::raster::{Gray, Photograph};
 
 /// Buildings rise above the ground by no more than this, metres. Assumption: roofs of houses and
@@ -51,10 +52,10 @@ impl RegionOfInterest {
     pub(crate) fn new(roi: [f64; 4], origin: &Vector3<f64>, heights: [f64; 2]) -> Result<Self> {
         let [x0, y0, x1, y1] = roi;
         if !(roi.iter().all(|v| v.is_finite()) && x0 < x1 && y0 < y1) {
-            return Err(Error::Scene {
-                problem: format!("the region of interest {x0},{y0},{x1},{y1} is empty"),
-                advice: "give x0,y0,x1,y1 in metres with x0 < x1 and y0 < y1".to_owned(),
-            });
+            return Err(Error::scene(
+                format!("the region of interest {x0},{y0},{x1},{y1} is empty"),
+                "give x0,y0,x1,y1 in metres with x0 < x1 and y0 < y1",
+            ));
         }
         Ok(Self {
             low: Point3::new(x0 - origin.x, y0 - origin.y, heights[0]),
@@ -79,7 +80,7 @@ impl RegionOfInterest {
             }
             view.part.is_some()
         });
-        if views.len() < 3 {
+        if views.len() < FEWEST_VIEWS {
             return Err(self.unseen(views.len(), &cameras));
         }
         let showing = views.len();
@@ -126,20 +127,10 @@ impl RegionOfInterest {
         if !self.is_seen_by(camera) {
             return None;
         }
-        let mut low = [f64::INFINITY; 2];
-        let mut high = [f64::NEG_INFINITY; 2];
-        for p in self.outline(camera) {
-            low = [low[0].min(p.x), low[1].min(p.y)];
-            high = [high[0].max(p.x), high[1].max(p.y)];
-        }
-        let span = |low: f64, high: f64, size: u32| {
-            let from = (low - MARGIN_PX).floor().clamp(0.0, f64::from(size)) as u32;
-            let to = (high + MARGIN_PX).ceil().clamp(0.0, f64::from(size)) as u32;
-            (to >= from + SMALLEST_SIDE_PX.min(size)).then(|| (from, to - from))
-        };
-        let (column, width) = span(low[0], high[0], camera.width)?;
-        let (row, height) = span(low[1], high[1], camera.height)?;
-        Some([column, row, width, height])
+        let window = window_of(bounds(self.outline(camera)), MARGIN_PX, camera);
+        let [_, _, width, height] = window;
+        let is_large = |side: u32, of: u32| side >= SMALLEST_SIDE_PX.min(of);
+        (is_large(width, camera.width) && is_large(height, camera.height)).then_some(window)
     }
 
     /// Does some ground point of the region lie in the image? The box of the projected corners
@@ -197,16 +188,9 @@ impl RegionOfInterest {
             .filter(|(i, axis)| i >> axis & 1 == 0)
         {
             let (a, b) = (corner(i), corner(i | 1 << axis));
-            let (da, db) = (
-                camera.depth(&a) - NEAR_PLANE_M,
-                camera.depth(&b) - NEAR_PLANE_M,
-            );
-            points.extend(
-                [(a, da), (b, db)]
-                    .iter()
-                    .filter(|(_, d)| *d >= 0.0)
-                    .map(|(p, _)| *p),
-            );
+            let [da, db] = [a, b].map(|p| camera.depth(&p) - NEAR_PLANE_M);
+            let before = [(a, da), (b, db)].into_iter().filter(|(_, d)| *d >= 0.0);
+            points.extend(before.map(|(p, _)| p));
             if da * db < 0.0 {
                 points.push(a + (b - a) * (da / (da - db)));
             }
@@ -217,38 +201,28 @@ impl RegionOfInterest {
     /// The refusal, with the area that the views see instead.
     fn unseen(&self, count: usize, cameras: &[Camera]) -> Error {
         let z = 0.5 * (self.low.z + self.high.z);
-        let mut low = [f64::INFINITY; 2];
-        let mut high = [f64::NEG_INFINITY; 2];
-        for camera in cameras {
+        let shown = cameras.iter().flat_map(|camera| {
             let (w, h) = (f64::from(camera.width), f64::from(camera.height));
-            let at = |(u, v): (f64, f64)| camera.at_height(&Point2::new(u * w, v * h), z);
-            for p in [(0.5, 0.5), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
-                .into_iter()
-                .filter_map(at)
-            {
-                // Near the horizon the footprint of an image is unbounded.
-                if (p - camera.center).norm() < 10.0 * (camera.center.z - z).abs() {
-                    low = [low[0].min(p.x), low[1].min(p.y)];
-                    high = [high[0].max(p.x), high[1].max(p.y)];
-                }
-            }
-        }
-        let middle = [
-            0.5 * (self.low.x + self.high.x),
-            0.5 * (self.low.y + self.high.y),
-        ];
-        let off = [0, 1].map(|i| middle[i] - 0.5 * (low[i] + high[i]));
-        Error::Scene {
-            problem: format!(
+            let places = [(0.5, 0.5), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
+            let on_ground = places.map(|(u, v)| camera.at_height(&Point2::new(u * w, v * h), z));
+            // Near the horizon the footprint of an image is unbounded.
+            let farthest = 10.0 * (camera.center.z - z).abs();
+            let is_near = move |p: &Point3<f64>| (p - camera.center).norm() < farthest;
+            on_ground.into_iter().flatten().filter(is_near)
+        });
+        let [low, high] = bounds(shown);
+        let off = 0.5 * (self.low.coords + self.high.coords - low.coords - high.coords);
+        Error::scene(
+            format!(
                 "the region of interest is seen by {count} views, but three are needed; its middle lies {:.0} m east and {:.0} m north of \
                  that of the {:.0} x {:.0} m that the views see",
-                off[0],
-                off[1],
-                high[0] - low[0],
-                high[1] - low[1]
+                off.x,
+                off.y,
+                high.x - low.x,
+                high.y - low.y
             ),
-            advice: "give it as x0,y0,x1,y1 in metres of the orientation's coordinates".to_owned(),
-        }
+            "give it as x0,y0,x1,y1 in metres of the orientation's coordinates",
+        )
     }
 }
 
@@ -288,7 +262,7 @@ pub(crate) fn cut_scene(scene: &mut Scene, roi: [f64; 4], most: Option<usize>) -
         true
     });
     let showing = scene.views.len();
-    if showing < 3 {
+    if showing < FEWEST_VIEWS {
         return Err(region.unseen(showing, &cameras));
     }
     let seeing: Vec<Camera> = scene.views.iter().map(|v| v.camera.clone()).collect();
@@ -310,26 +284,28 @@ pub(crate) fn source_of(part: [u32; 4], whole: &Camera, lens: &Distortion) -> [u
     // [`SLACK_PX`].
     const GRID_STEPS: u32 = 16;
     let [column, row, width, height] = part.map(f64::from);
-    let k = &whole.k;
-    let mut low = [column, row];
-    let mut high = [column + width, row + height];
-    for (i, j) in (0..=GRID_STEPS).flat_map(|i| (0..=GRID_STEPS).map(move |j| (i, j))) {
+    let corner = Point2::new(column, row);
+    let place = |i: u32, j: u32| {
         let t = |n: u32| f64::from(n) / f64::from(GRID_STEPS);
-        let (x, y) = (column + t(i) * width, row + t(j) * height);
-        let p = lens.measured(k, &Point2::new(x, y));
-        low = [0, 1].map(|a| low[a].min(p[a]));
-        high = [0, 1].map(|a| high[a].max(p[a]));
-    }
+        Point2::new(column + t(i) * width, row + t(j) * height)
+    };
+    let grid = (0..=GRID_STEPS).flat_map(|i| (0..=GRID_STEPS).map(move |j| (i, j)));
+    let measured = grid.map(|(i, j)| lens.measured(&whole.k, &place(i, j)));
+    let ends = [corner, corner + Vector2::new(width, height)];
     // For positions between the samples, and for interpolation at the border.
     const SLACK_PX: f64 = 4.0;
-    let side = |low: f64, high: f64, size: u32| {
-        let from = (low - SLACK_PX).floor().clamp(0.0, f64::from(size)) as u32;
-        (
-            from,
-            (high + SLACK_PX).ceil().clamp(0.0, f64::from(size)) as u32 - from,
-        )
+    window_of(bounds(ends.into_iter().chain(measured)), SLACK_PX, whole)
+}
+
+/// The whole pixels of an image (column, row, width, height) around a box with a margin.
+fn window_of([low, high]: [Point2<f64>; 2], margin_px: f64, image: &Camera) -> [u32; 4] {
+    let side = |axis: usize, size: u32| {
+        let inside = |v: f64| v.clamp(0.0, f64::from(size)) as u32;
+        let from = inside((low[axis] - margin_px).floor());
+        let to = inside((high[axis] + margin_px).ceil());
+        (from, to.saturating_sub(from))
     };
-    let (column, width) = side(low[0], high[0], whole.width);
-    let (row, height) = side(low[1], high[1], whole.height);
+    let (column, width) = side(0, image.width);
+    let (row, height) = side(1, image.height);
     [column, row, width, height]
 }

@@ -15,7 +15,7 @@
 use nalgebra::{Matrix3, Point3};
 
 use crate::base::math::ln;
-use crate::photographs::camera::Camera;
+use crate::photographs::camera::{Camera, FEWEST_VIEWS};
 
 /// A piece of level surface that the views are to measure.
 struct Patch {
@@ -47,7 +47,8 @@ pub(crate) fn most_telling(
     let mut chosen = Vec::new();
     let mut waiting: Vec<usize> = (0..cameras.len()).collect();
     // Places beyond the border of a flight are not waited for.
-    let is_shown = |patch: &&Patch| cameras.iter().filter(|c| sees(c, patch)).count() >= 3;
+    let is_shown =
+        |patch: &&Patch| cameras.iter().filter(|c| sees(c, patch)).count() >= FEWEST_VIEWS;
     let shown = patches.iter().filter(is_shown).count();
     let mut seen = 0;
     while chosen.len() < most || 2 * seen < most * shown {

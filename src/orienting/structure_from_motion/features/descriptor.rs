@@ -28,6 +28,30 @@ pub(crate) const BYTES_AT_ONE: f32 = 512.0;
 /// Square roots of histograms whose sum is one, times 512.
 pub(crate) type Descriptor = [u8; LENGTH];
 
+/// Descriptors in serde's forms: their bytes, one after the other.
+pub(super) mod in_a_row {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    use super::Descriptor;
+
+    pub(crate) fn serialize<S: Serializer>(
+        descriptors: &[Descriptor],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        descriptors.as_flattened().serialize(serializer)
+    }
+
+    pub(crate) fn deserialize<'a, D: Deserializer<'a>>(
+        deserializer: D,
+    ) -> Result<Vec<Descriptor>, D::Error> {
+        let bytes = Vec::<u8>::deserialize(deserializer)?;
+        match bytes.as_chunks() {
+            (descriptors, []) => Ok(descriptors.to_vec()),
+            _ => Err(D::Error::custom("a descriptor is cut off")),
+        }
+    }
+}
+
 thread_local! {
     static DECAY: Decay = Decay::new();
 }
@@ -106,5 +130,5 @@ fn in_bytes(histogram: &mut [f32; LENGTH]) -> Descriptor {
         };
     }
     let sum = histogram.iter().sum::<f32>().max(1e-12);
-    histogram.map(|value| ((value / sum).sqrt() * BYTES_AT_ONE + 0.5).min(255.0) as u8)
+    histogram.map(|value| ((value / sum).sqrt() * BYTES_AT_ONE + 0.5) as u8)
 }

@@ -44,11 +44,12 @@ pub(super) struct Keypoint {
 }
 
 /// Keypoints of a photograph and their descriptors, the strongest first.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Features {
     /// Where they are.
     pub keypoints: Vec<Keypoint>,
     /// What they look like, as many.
+    #[serde(with = "descriptor::in_a_row")]
     pub descriptors: Vec<Descriptor>,
 }
 

@@ -7,17 +7,10 @@ use super::stated::{StatedPose, spread};
 use crate::base::least_squares::Loss;
 use crate::base::math;
 use crate::orienting::structure_from_motion::block::Block;
-use crate::orienting::structure_from_motion::random::Random;
-use crate::orienting::structure_from_motion::similarity::Similarity;
+use crate::orienting::structure_from_motion::similarity::{FEWEST_POINTS, Similarity};
 
 /// Standard deviation of a position where none is stated, metres: a consumer receiver.
 pub(in super::super) const RECEIVER_SIGMA_M: f64 = 2.0;
-
-/// Samples of three positions.
-const SAMPLES: usize = 300;
-
-/// Fewest positions of a frame: a similarity in space has seven unknowns.
-pub(super) const FEWEST_POSITIONS: usize = 3;
 
 /// The block's places of photographs, and the stated ones.
 pub(super) struct Places {
@@ -154,23 +147,17 @@ impl Places {
             &self.known
         };
         let median = |s: &Similarity| math::median(&mut self.distances(s)).unwrap_or(f64::INFINITY);
-        let mut best = self.fitted(sampled, &vec![1.0; sampled.len()], None)?;
-        let mut least = median(&best);
-        let mut random = Random::new(7);
-        for _ in 0..SAMPLES {
-            let sample = random.sample::<3>(sampled.len()).map(|i| sampled[i]);
+        let start = self.fitted(sampled, &vec![1.0; sampled.len()], None)?;
+        let of_triple = |triple: [usize; 3]| {
+            let sample = triple.map(|i| sampled[i]);
             // Triples near one line say nothing of the turn about it.
             let across = spread(&sample.map(|i| self.to[i])).lengths[1];
-            if self.upright.is_none() && across < self.sigma_m {
-                continue;
-            }
-            if let Some(s) = self.fitted(&sample, &[1.0; 3], None) {
-                let m = median(&s);
-                if m < least {
-                    (best, least) = (s, m);
-                }
-            }
-        }
+            let is_wide = self.upright.is_some() || across >= self.sigma_m;
+            is_wide
+                .then(|| self.fitted(&sample, &[1.0; 3], None))
+                .flatten()
+        };
+        let mut best = Similarity::of_triples(start, 7, sampled.len(), of_triple, median);
         let mut weights = vec![1.0; self.count()];
         for _ in 0..20 {
             let median = math::median(&mut self.distances(&best))?;
@@ -189,7 +176,7 @@ impl Places {
 
     /// The similarity in space, where enough heights are stated across the line of flight too.
     pub(super) fn in_space(&self) -> Option<(Similarity, Found, Vector3<f64>)> {
-        let is_wide = self.known.len() >= FEWEST_POSITIONS
+        let is_wide = self.known.len() >= FEWEST_POINTS
             && spread(&self.with_heights()).lengths[1] >= 2.0 * self.sigma_m;
         let is_whole = self.known.len() == self.count();
         (is_whole || is_wide).then(|| self.found().ok()).flatten()
@@ -220,7 +207,7 @@ impl Places {
             Some(_) => rms_m[0],
             None => math::hypot(rms_m[0], rms_m[1]),
         });
-        if agreeing.len() < FEWEST_POSITIONS || spread.lengths[0] < 2.0 * noise_m {
+        if agreeing.len() < FEWEST_POINTS || spread.lengths[0] < 2.0 * noise_m {
             return Err(TooNear { stated, noise_m });
         }
         if let Some(turn) = self.upright {
@@ -248,7 +235,7 @@ pub(super) fn upright_fit(
     rotation: &Rotation3<f64>,
 ) -> Option<(Similarity, Found)> {
     let places = Places::of(block, stated, Some(*rotation));
-    if places.count() < FEWEST_POSITIONS {
+    if places.count() < FEWEST_POINTS {
         return None;
     }
     let (similarity, found, _) = places.found().ok()?;

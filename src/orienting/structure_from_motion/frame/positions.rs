@@ -4,14 +4,14 @@
 use nalgebra::{Point3, Vector3};
 
 use super::checks::{Doubt, Placement, doubts, tilt_sigma};
-use super::places::{FEWEST_POSITIONS, Found, Places, TooNear};
+use super::places::{Found, Places, TooNear};
 use super::stated::{StatedPose, level, without_heights};
 use super::vertical::{AnglesFinding, turn_to_up, up_of_plane};
 use crate::base::geometry::mean_point;
 use crate::base::math;
 use crate::orienting::orientation::{Anchor, LinearUnit, geocentric_of};
 use crate::orienting::structure_from_motion::block::Block;
-use crate::orienting::structure_from_motion::similarity::Similarity;
+use crate::orienting::structure_from_motion::similarity::{FEWEST_POINTS, Similarity};
 
 /// Positions that are nearer to each other are one, metres: headers write no finer ones.
 const ONE_PLACE_M: f64 = 1e-3;
@@ -41,7 +41,7 @@ pub(super) type Placed = Result<(Similarity, Found, Option<Doubt>), NoPositions>
 pub(super) fn by_positions(block: &Block, stated: &[StatedPose], angles: &AnglesFinding) -> Placed {
     let places = Places::of(block, stated, None);
     let count = places.count();
-    if count < FEWEST_POSITIONS {
+    if count < FEWEST_POINTS {
         return Err(NoPositions::Few { stated: count });
     }
     let first = places.to[0];
@@ -160,7 +160,7 @@ fn mistake_of(
                 math::smaller(miss_m / CLEARLY_BETTER, noise_m),
             )
         }
-        _ => (FEWEST_POSITIONS, noise_m),
+        _ => (FEWEST_POINTS, noise_m),
     };
     MISTAKES.iter().find(|mistake| {
         let meant = as_meant(stated, anchor, mistake.meant);

@@ -1,8 +1,8 @@
 //! What is stated of photographs, and where the block has them.
 
-use nalgebra::{Matrix3, Point3, Rotation3, SymmetricEigen, Vector3};
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
-use crate::base::geometry::{mean_point, rotation_from_axis_angle};
+use crate::base::geometry::{mean_point, principal_axes, rotation_from_axis_angle};
 use crate::base::math;
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::similarity::Similarity;
@@ -32,7 +32,7 @@ pub(super) fn without_heights(stated: &[StatedPose]) -> Vec<StatedPose> {
     lacking.collect()
 }
 
-pub(super) fn centers(block: &Block) -> Vec<Point3<f64>> {
+pub(in super::super) fn centers(block: &Block) -> Vec<Point3<f64>> {
     let poses = block.photos.iter().filter_map(|p| p.pose.as_ref());
     poses.map(|pose| pose.center).collect()
 }
@@ -57,13 +57,12 @@ pub(in super::super) fn spread(points: &[Point3<f64>]) -> Spread {
         let d = p - middle;
         sum + d * d.transpose()
     });
-    let eigen = SymmetricEigen::new(square / points.len() as f64);
-    let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    let (squares, [normal, _, axis]) = principal_axes(square / points.len() as f64);
+    let [least, middle, largest] = squares.map(|square| square.max(0.0).sqrt());
     Spread {
-        lengths: order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()),
-        axis: eigen.eigenvectors.column(order[0]).into_owned(),
-        normal: eigen.eigenvectors.column(order[2]).into_owned(),
+        lengths: [largest, middle, least],
+        axis,
+        normal,
     }
 }
 

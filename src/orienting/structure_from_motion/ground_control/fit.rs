@@ -7,19 +7,16 @@ use super::marks::{Mark, Marks};
 use super::residual::ControlResidual;
 use crate::base::geometry::mean_point;
 use crate::base::least_squares::{Loss, NormalEquations};
-use crate::base::math::{self, RAYLEIGH_MEDIAN, SIGMA_OVER_MEDIAN};
+use crate::base::math::{self, RAYLEIGH_MEDIAN, SIGMA_OVER_MEDIAN, SURE_SIGMAS};
 use crate::orienting::orientation::FrameSigma;
 use crate::orienting::structure_from_motion::block::{Block, BlockPhoto, Observation};
-use crate::orienting::structure_from_motion::frame::{spread, tilt_sigma, turn_to_up};
-use crate::orienting::structure_from_motion::random::Random;
+use crate::orienting::structure_from_motion::frame::{centers, spread, tilt_sigma, turn_to_up};
 use crate::orienting::structure_from_motion::resection::linearised;
-use crate::orienting::structure_from_motion::similarity::Similarity;
+use crate::orienting::structure_from_motion::similarity::{FEWEST_POINTS, Similarity};
 use crate::orienting::structure_from_motion::similarity_fit::{
     Free, KnownOf, Tie, fitted as adjusted, worth,
 };
-use crate::orienting::structure_from_motion::triangulation::{
-    LARGEST_RESIDUAL_SIGMAS, triangulate,
-};
+use crate::orienting::structure_from_motion::triangulation::triangulate;
 
 /// Standard deviation of a point that a person marks in a photograph, pixels. Assumption: the list
 /// does not state any.
@@ -28,14 +25,8 @@ pub(in super::super) const MARK_SIGMA_PX: f64 = 1.0;
 /// That of a surveyed coordinate, metres. Assumption: a satellite receiver with corrections.
 const COORDINATE_SIGMA_M: f64 = 0.03;
 
-/// Fewest points that give a frame.
-const FEWEST_POINTS: usize = 3;
-
 /// Points whose spread across their main axis is a smaller share of that along it are on a line.
 const COLLINEAR_SHARE: f64 = 0.02;
-
-/// Triples of points that are tried, at most.
-const SAMPLES: usize = 300;
 
 /// Normalised residuals at which Cauchy's loss of a point begins to give way.
 const LOSS: Loss = Loss::Cauchy(2.0);
@@ -116,7 +107,7 @@ pub(super) fn fitted(block: &Block, marks: &Marks, control: &GroundControl) -> R
         .map(|u| length(u) / typical_length(u.tie.known))
         .collect();
     let unit = math::median(&mut typical).map_or(1.0, |m| m.max(1.0));
-    let agrees = |u: &&Usable| length(u) <= LARGEST_RESIDUAL_SIGMAS * unit;
+    let agrees = |u: &&Usable| length(u) <= SURE_SIGMAS * unit;
     for of in fixing.iter().chain(&checks) {
         let point = &mut points[of.number];
         let (off, axes) = (of.tie.off(&similarity, 0.0), of.tie.known.axes());
@@ -253,7 +244,7 @@ pub(super) fn meeting(block: &Block, of_points: &[Vec<Mark>]) -> f64 {
             return 0.0;
         };
         let share = |&i: &usize| {
-            let r = with.residual(&observations[i], &place) / LARGEST_RESIDUAL_SIGMAS;
+            let r = with.residual(&observations[i], &place) / SURE_SIGMAS;
             1.0 - (r * r).min(1.0)
         };
         agreeing.iter().map(share).sum::<f64>()
@@ -334,24 +325,17 @@ fn robust_similarity(block: &Block, points: &mut [Usable]) -> Option<Similarity>
         true => between(&whole)?,
         false => upright(block, points)?,
     };
-    let mut loss = |s: &Similarity| -> f64 {
-        weigh(points, s);
-        let square = |u: &Usable| (u.tie.off(s, 0.0) / u.tie.sigma_m).norm_squared();
-        points.iter().map(|u| LOSS.cost(square(u))).sum()
-    };
-    let mut least = loss(&best);
-    let mut random = Random::new(11);
-    for _ in 0..if is_whole { SAMPLES } else { 0 } {
-        let sample = random.sample::<3>(whole.len()).map(|i| whole[i]);
-        if is_narrow(&sample.map(|(_, to)| to)) {
-            continue;
-        }
-        if let Some(s) = between(&sample) {
-            let l = loss(&s);
-            if l < least {
-                (best, least) = (s, l);
-            }
-        }
+    if is_whole {
+        let of_triple = |triple: [usize; 3]| {
+            let sample = triple.map(|i| whole[i]);
+            let is_narrow = is_narrow(&sample.map(|(_, to)| to));
+            (!is_narrow).then(|| between(&sample)).flatten()
+        };
+        best = Similarity::of_triples(best, 11, whole.len(), of_triple, |s| {
+            weigh(points, s);
+            let square = |u: &Usable| (u.tie.off(s, 0.0) / u.tie.sigma_m).norm_squared();
+            points.iter().map(|u| LOSS.cost(square(u))).sum()
+        });
     }
     weigh(points, &best);
     let ties: Vec<Tie> = points.iter().map(|u| u.tie.clone()).collect();
@@ -364,10 +348,8 @@ fn robust_similarity(block: &Block, points: &mut [Usable]) -> Option<Similarity>
 /// the ground, on the side of the cameras; the rest follows from the plan.
 fn upright(block: &Block, points: &[Usable]) -> Option<Similarity> {
     let from: Vec<Point3<f64>> = points.iter().map(|u| u.tie.from).collect();
-    let cameras = block.photos.iter().filter_map(|photo| photo.pose.as_ref());
-    let cameras: Vec<Point3<f64>> = cameras.map(|pose| pose.center).collect();
     let normal = spread(&from).normal;
-    let towards = mean_point(&cameras) - mean_point(&from);
+    let towards = mean_point(&centers(block)) - mean_point(&from);
     let turn = turn_to_up(&(normal * towards.dot(&normal).signum()));
     let in_plan = points.iter().filter(|u| u.tie.known != KnownOf::Height);
     let (from, to): (Vec<_>, Vec<_>) = in_plan.map(|u| (turn * u.tie.from, u.tie.to)).unzip();

@@ -141,10 +141,11 @@ impl GroundControl {
     /// Where a line does not follow the format, or a point has two places.
     pub fn read(file: &str, text: &str) -> Result<Self> {
         let list = List::new(file, text)?;
-        let (system, (first, stated)) = (&list.system, list.first);
+        let (system, first) = (&list.system, list.first);
+        let stated = first.text;
         let mut points = Points::default();
-        for &(i, line) in &list.lines {
-            (points.add(line)).map_err(|(problem, expected)| list.refused(i, problem, expected))?;
+        for line in &list.lines {
+            (points.add(line.text)).map_err(|(problem, expected)| line.error(problem, expected))?;
         }
         let Points {
             points, no_roles, ..
@@ -161,12 +162,12 @@ impl GroundControl {
                 false => "longitudes and latitudes, but the points have others",
             };
             let expected = "longitude first, then latitude, or the system of the coordinates";
-            return Err(list.refused(first, format!("'{stated}': {problem}"), expected));
+            return Err(first.error(format!("'{stated}': {problem}"), expected));
         }
         if system.is_other_datum() {
             let problem = format!("'{stated}': no way from its datum to WGS84 is known here");
             let expected = "coordinates converted to EPSG:4326 or to a map (cs2cs of PROJ does)";
-            return Err(list.refused(first, problem, expected));
+            return Err(first.error(problem, expected));
         }
         let is_on_map = matches!(system.units.plan, PlanUnit::Length(_));
         let mut control = Self {

@@ -58,7 +58,7 @@ impl GeoList {
     /// Where a line does not follow the format.
     pub fn read(file: &str, text: &str) -> Result<Self> {
         let list = List::new(file, text)?;
-        let (system, stated) = (&list.system, list.first.1);
+        let (system, stated) = (&list.system, list.first.text);
         let grid = system.epsg.and_then(TransverseMercator::of_epsg);
         let is_read = match system.units.plan {
             PlanUnit::Length(_) => grid.is_some(),
@@ -75,9 +75,9 @@ impl GeoList {
                 )),
             });
         }
-        let places = list.lines.iter().map(|(i, line)| {
-            let place = place_of(line, &system.units, grid);
-            place.ok_or_else(|| list.refused(*i, format!("'{line}'"), COLUMNS))
+        let places = list.lines.iter().map(|line| {
+            let place = place_of(line.text, &system.units, grid);
+            place.ok_or_else(|| line.error(format!("'{}'", line.text), COLUMNS))
         });
         Ok(Self {
             places: places.collect::<Result<_>>()?,

@@ -112,9 +112,6 @@ impl Mistake {
 /// Numbers of zones stand before eastings as multiples of this, metres.
 const ZONE_M: f64 = 1e6;
 
-/// Longest side of a JPEG, pixels: no original is larger.
-const LARGEST_SIDE_PX: f64 = 65_535.0;
-
 /// Points that tell how much photographs were reduced; more would tell the same.
 const ENOUGH_POINTS: usize = 10;
 
@@ -132,10 +129,12 @@ fn factor_of_originals(marks: &Marks, block: &Block) -> Option<f64> {
         each.reduce(|best, next| if next.0 > best.0 { next } else { best })
     };
     let mut factors = vec![marks.least_factor()];
+    // No side of a JPEG is longer, and so of no original.
+    let longest_side = f64::from(u16::MAX);
     // Steps that move a mark at the edge by two pixels, half of the largest residual.
     while let Some(last) = factors.last().copied()
         && last > 0.0
-        && last * width < LARGEST_SIDE_PX
+        && last * width < longest_side
     {
         factors.push(last * (1.0 + 2.0 / width));
     }

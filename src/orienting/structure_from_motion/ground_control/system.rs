@@ -1,53 +1,36 @@
 //! What OpenDroneMap's lists have in common: a reference system in the first line, then a line for
 //! each thing.
 
-use crate::base::error::{Error, Result};
+use crate::base::error::Result;
 use crate::orienting::orientation::{
-    InputFile, PlanUnit, SystemUnits, epsg_of, is_geographic, units_of,
+    InputFile, PlanUnit, SystemUnits, TextLine, data_lines, epsg_of, is_geographic, units_of,
 };
 
 /// A list in its lines.
 pub(super) struct List<'t> {
-    file: &'t str,
-    /// The first line, and its place.
-    pub first: (usize, &'t str),
+    pub first: TextLine<'t>,
     /// What that says.
     pub system: StatedSystem,
-    /// The lines below it with their places; comments and empty ones are left out.
-    pub lines: Vec<(usize, &'t str)>,
+    /// The lines below it; comments and empty ones are left out.
+    pub lines: Vec<TextLine<'t>>,
 }
 
 impl<'t> List<'t> {
     /// Reads the first line; `file` is for messages.
     pub(super) fn new(file: &'t str, text: &'t str) -> Result<Self> {
-        let mut lines = (text.lines().enumerate())
-            .map(|(i, line)| (i, line.trim()))
-            .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-        let first = lines.next().unwrap_or((0, ""));
-        let system = StatedSystem::of(first.1).ok_or_else(|| {
-            let problem = format!("'{}'", first.1);
-            refused(file, first.0, problem, StatedSystem::EXPECTED)
-        })?;
-        Ok(Self {
+        let mut lines = data_lines(file, text);
+        let first = lines.next().unwrap_or(TextLine {
             file,
+            number: 1,
+            text: "",
+        });
+        let system = StatedSystem::of(first.text)
+            .ok_or_else(|| first.error(format!("'{}'", first.text), StatedSystem::EXPECTED))?;
+        Ok(Self {
             first,
             system,
             lines: lines.collect(),
         })
-    }
-
-    /// The refusal of a line.
-    pub(super) fn refused(&self, line: usize, problem: String, expected: &str) -> Error {
-        refused(self.file, line, problem, expected)
-    }
-}
-
-fn refused(file: &str, line: usize, problem: String, expected: &str) -> Error {
-    Error::Line {
-        file: file.to_owned(),
-        line: line + 1,
-        problem,
-        expected: expected.to_owned(),
     }
 }
 

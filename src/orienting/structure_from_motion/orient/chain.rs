@@ -9,11 +9,9 @@ use super::cameras::{Cameras, Stated, stated_of};
 use super::hypotheses::{Hypothesis, guesses, register_likeliest};
 use super::options::{OrientOptions, Oriented};
 use super::photo::{Photo, ReadPhoto};
-use super::refusals::{
-    contradicted_focal, not_joined, refusal, too_few, unconnected, undetermined_focal,
-};
+use super::refusals::{contradicted_focal, not_joined, too_few, unconnected, undetermined_focal};
 use super::snapshot::Snapshot;
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::base::execution::Listener;
 use crate::base::execution::{
     MergedShards, Origin, ShardTask, Sharded, run_merged, run_shard, with_listener,
@@ -36,9 +34,7 @@ use crate::orienting::structure_from_motion::two_view::PairKind;
 use crate::orienting::structure_from_motion::verification::{
     Guess, MatchedPhoto, guess_focal, match_pairs, verify,
 };
-
-/// Fewest photographs of a block.
-const FEWEST_PHOTOS: usize = 3;
+use crate::photographs::camera::FEWEST_VIEWS;
 
 /// Standard deviation of a keypoint before it is measured, pixels of the working size.
 const KEYPOINT_SIGMA: f64 = 1.0;
@@ -79,6 +75,7 @@ struct Connected {
 
 /// Photographs on their way to an orientation: [`add`](Self::add) each,
 /// [`connect`](Self::connect), [`orient`](Self::orient).
+#[derive(Default)]
 pub struct OrientChain {
     options: OrientOptions,
     /// By path.
@@ -94,11 +91,7 @@ impl OrientChain {
     pub fn new(options: OrientOptions) -> Self {
         Self {
             options,
-            photos: Vec::new(),
-            left_out: Vec::new(),
-            connected: None,
-            control: None,
-            places: None,
+            ..Self::default()
         }
     }
 
@@ -141,8 +134,8 @@ impl OrientChain {
     /// # Errors
     /// Where there are fewer than three.
     pub(super) fn has_enough(&self, images: usize) -> Result<()> {
-        if images < FEWEST_PHOTOS {
-            return Err(refusal(
+        if images < FEWEST_VIEWS {
+            return Err(Error::scene(
                 format!("{images} photographs"),
                 "give three or more that overlap",
             ));
@@ -180,7 +173,7 @@ impl OrientChain {
     /// Where fewer than three photographs are of use.
     pub fn connect(&mut self, merged: MergedShards) -> Result<()> {
         self.has_enough(self.photos.len() + self.left_out.len())?;
-        if self.photos.len() < FEWEST_PHOTOS {
+        if self.photos.len() < FEWEST_VIEWS {
             self.left_out.sort_by(|a, b| a.file.cmp(&b.file));
             return Err(too_few(&self.left_out));
         }
@@ -276,7 +269,7 @@ impl OrientChain {
         let unknown = || {
             let photographs = self.photos.len() + self.left_out.len();
             let problem = format!("the pairs of the {photographs} photographs are not known yet");
-            refusal(problem, "find them first")
+            Error::scene(problem, "find them first")
         };
         let connected = self.connected.as_ref().ok_or_else(unknown)?;
         let Connected {
@@ -301,7 +294,7 @@ impl OrientChain {
         let mut left_out = self.left_out.clone();
         left_out.extend(not_joined(&self.photos, &block, verified));
         left_out.sort_by(|a, b| a.file.cmp(&b.file));
-        if registered < FEWEST_PHOTOS {
+        if registered < FEWEST_VIEWS {
             let guesses: Vec<&Guess> = hypotheses.iter().map(|h| &h.guess).collect();
             return Err(
                 contradicted_focal(&guesses).unwrap_or_else(|| unconnected(verified, &left_out))

@@ -53,16 +53,16 @@ impl Oriented {
         let factor = metres / measured;
         let is_length = |length: f64| length.is_finite() && length > 0.0;
         if !is_length(measured) || !is_length(metres) || !is_length(factor) {
-            return Err(Error::Scene {
-                problem: format!("{measured} in the frame, {metres} m in the world: no length"),
-                advice: "measure two places that are apart".to_owned(),
-            });
+            return Err(Error::scene(
+                format!("{measured} in the frame, {metres} m in the world: no length"),
+                "measure two places that are apart",
+            ));
         }
         if !self.report.control.is_empty() {
-            return Err(Error::Scene {
-                problem: "the ground control points give the scale".to_owned(),
-                advice: "correct them, or leave them out".to_owned(),
-            });
+            return Err(Error::scene(
+                "the ground control points give the scale",
+                "correct them, or leave them out",
+            ));
         }
         let centers: Vec<Point3<f64>> = self.model.photos.iter().map(|p| p.pose.center).collect();
         let fixed = match self.report.anchor {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::options::OrientOptions;
 use crate::orienting::orientation::InputFile;
-use crate::orienting::structure_from_motion::features::{Features, Keypoint, detect_features};
+use crate::orienting::structure_from_motion::features::{Features, detect_features};
 use crate::orienting::structure_from_motion::metadata::PhotoMetadata;
 use crate::orienting::structure_from_motion::output::{LeftOut, NotJoined};
 use crate::photographs::raster::{image_header, load_image};
@@ -13,7 +13,7 @@ use crate::photographs::raster::{image_header, load_image};
 const FEWEST_KEYPOINTS: usize = 60;
 
 /// A photograph that was read.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Photo {
     pub path: String,
     /// Width and height, pixels.
@@ -78,25 +78,9 @@ fn read(file: &InputFile, options: &OrientOptions) -> Result<Photo, NotJoined> {
 #[derive(Clone, Debug)]
 pub struct ReadPhoto(pub(super) Result<Photo, LeftOut>);
 
-/// The form of [`ReadPhoto`] in bytes.
-#[derive(Serialize, Deserialize)]
-enum Packed {
-    Read {
-        path: String,
-        size: [u32; 2],
-        metadata: Box<PhotoMetadata>,
-        keypoints: Vec<Keypoint>,
-        /// One after the other.
-        descriptors: Vec<u8>,
-        colours: Vec<[u8; 3]>,
-    },
-    LeftOut {
-        path: String,
-        keypoints: usize,
-        /// Why it cannot be decoded.
-        problem: Option<String>,
-    },
-}
+/// The form of [`ReadPhoto`] in bytes: of a photograph that is of no use its path and the number of
+/// its keypoints, or why it cannot be decoded.
+type Packed<P> = Result<P, (String, Result<usize, String>)>;
 
 impl ReadPhoto {
     /// Reads a photograph.
@@ -132,70 +116,32 @@ impl ReadPhoto {
 
     /// As bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let packed = match &self.0 {
-            Ok(photo) => Packed::Read {
-                path: photo.path.clone(),
-                size: photo.size,
-                metadata: Box::new(photo.metadata.clone()),
-                keypoints: photo.features.keypoints.clone(),
-                descriptors: photo.features.descriptors.as_flattened().to_vec(),
-                colours: photo.colours.clone(),
-            },
-            Err(left) => {
-                let (keypoints, problem) = match &left.reason {
-                    NotJoined::FewFeatures { keypoints } => (*keypoints, None),
-                    other => (0, Some(other.words())),
-                };
-                Packed::LeftOut {
-                    path: left.file.clone(),
-                    keypoints,
-                    problem,
-                }
-            }
-        };
+        let packed: Packed<&Photo> = self.0.as_ref().map_err(|left| {
+            let reason = match &left.reason {
+                NotJoined::FewFeatures { keypoints } => Ok(*keypoints),
+                other => Err(other.words()),
+            };
+            (left.file.clone(), reason)
+        });
         postcard::to_stdvec(&packed).expect("bytes can be written to memory")
     }
 
     /// From [`Self::to_bytes`]; `None` where the bytes are something else.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
-        Some(Self(match postcard::from_bytes(bytes).ok()? {
-            Packed::Read {
-                path,
-                size,
-                metadata,
-                keypoints,
-                descriptors,
-                colours,
-            } => {
-                let (descriptors, rest) = descriptors.as_chunks();
-                let is_whole = rest.is_empty()
-                    && descriptors.len() == keypoints.len()
-                    && colours.len() == keypoints.len();
-                if !is_whole {
-                    return None;
-                }
-                Ok(Photo {
-                    path,
-                    size,
-                    metadata: *metadata,
-                    features: Features {
-                        keypoints,
-                        descriptors: descriptors.to_vec(),
-                    },
-                    colours,
-                })
-            }
-            Packed::LeftOut {
-                path,
-                keypoints,
-                problem,
-            } => Err(LeftOut {
-                file: path,
-                reason: match problem {
-                    Some(problem) => NotJoined::Unreadable { problem },
-                    None => NotJoined::FewFeatures { keypoints },
-                },
-            }),
-        }))
+        let packed: Packed<Photo> = postcard::from_bytes(bytes).ok()?;
+        let read = packed.map_err(|(file, reason)| LeftOut {
+            file,
+            reason: match reason {
+                Ok(keypoints) => NotJoined::FewFeatures { keypoints },
+                Err(problem) => NotJoined::Unreadable { problem },
+            },
+        });
+        let is_whole = |Photo {
+                            features, colours, ..
+                        }: &Photo| {
+            let counts = [features.descriptors.len(), colours.len()];
+            counts == [features.keypoints.len(); 2]
+        };
+        read.as_ref().map_or(true, is_whole).then_some(Self(read))
     }
 }

@@ -37,18 +37,11 @@ pub(super) fn not_joined(
         .collect()
 }
 
-pub(super) fn refusal(problem: String, advice: &str) -> Error {
-    Error::Scene {
-        problem,
-        advice: advice.to_owned(),
-    }
-}
-
 pub(super) fn too_few(left_out: &[LeftOut]) -> Error {
     let named: Vec<String> = (left_out.iter().take(5))
         .map(|left| format!("{}: {}", left.file, left.reason.words()))
         .collect();
-    refusal(
+    Error::scene(
         format!(
             "fewer than three photographs are of use ({})",
             named.join("; ")
@@ -60,8 +53,8 @@ pub(super) fn too_few(left_out: &[LeftOut]) -> Error {
 /// Why no block arose.
 pub(super) fn unconnected(verified: &[VerifiedPair], left_out: &[LeftOut]) -> Error {
     if verified.is_empty() {
-        return refusal(
-            "no two photographs show enough of the same".to_owned(),
+        return Error::scene(
+            "no two photographs show enough of the same",
             "take photographs that overlap by two thirds, of things that do not move",
         );
     }
@@ -69,13 +62,12 @@ pub(super) fn unconnected(verified: &[VerifiedPair], left_out: &[LeftOut]) -> Er
         .iter()
         .all(|p| p.geometry.kind == PairKind::Rotation)
     {
-        return refusal(
-            "the photographs were taken from one place, the camera only turned: nothing shows depth"
-                .to_owned(),
+        return Error::scene(
+            "the photographs were taken from one place, the camera only turned: nothing shows depth",
             "move the camera between photographs",
         );
     }
-    refusal(
+    Error::scene(
         format!("the {} photographs do not join", left_out.len()),
         "take photographs that overlap by two thirds, so that every place is in three of them, or \
          state the focal length in pixels",
@@ -95,7 +87,7 @@ pub(super) fn contradicted_focal(guesses: &[&Guess]) -> Option<Error> {
         return None;
     }
     let [f, likelier] = [stated, other].map(|g| g.cameras.first().map_or(0.0, |c| c.focal));
-    Some(refusal(
+    Some(Error::scene(
         format!(
             "the photographs contradict the stated focal length of {f:.0} px: two by two they fit \
              {likelier:.0} px better, and do not join under either"
@@ -117,7 +109,7 @@ pub(super) fn undetermined_focal(
     for (i, (found, stated)) in found.iter().zip(stated).enumerate() {
         let sigma = covariance.map_or(f64::INFINITY, |c| c.cameras[i][0]);
         if sigma > STATED_FOCAL_PRIOR * found.focal {
-            return Err(refusal(
+            return Err(Error::scene(
                 format!(
                     "the photographs contradict the stated focal length of {:.0} px, and do not say \
                      which it is ({:.0} +- {sigma:.0} px)",

@@ -10,10 +10,8 @@ use crate::orienting::structure_from_motion::block::{Block, Track};
 use crate::orienting::structure_from_motion::bundle::Covariance;
 use crate::orienting::structure_from_motion::frame::{FrameBasis, StatedPose};
 use crate::orienting::structure_from_motion::ground_control::{ControlResidual, rms_m};
+use crate::orienting::structure_from_motion::incremental::FEWEST_POINTS;
 use crate::orienting::structure_from_motion::intrinsics::{Intrinsics, stated_focal_nats};
-
-/// Fewest shared points of photographs that count as overlapping.
-const FEWEST_SHARED: usize = 15;
 
 /// Least mean number of rays without a warning.
 const FEW_RAYS: f64 = 2.5;
@@ -222,7 +220,7 @@ impl RayCounts {
     fn partners(&self, photo: usize, registered: &[usize]) -> usize {
         let others = registered.iter().filter(|&&other| other != photo);
         others
-            .filter(|&&other| self.shared(photo, other) >= FEWEST_SHARED)
+            .filter(|&&other| self.shared(photo, other) >= FEWEST_POINTS)
             .count()
     }
 
@@ -233,7 +231,7 @@ impl RayCounts {
         for (i, &a) in registered.iter().enumerate() {
             for (j, &b) in registered.iter().enumerate().skip(i + 1) {
                 let count = self.shared(a, b);
-                if count >= FEWEST_SHARED {
+                if count >= FEWEST_POINTS {
                     overlap.push((i, j, count));
                 }
             }

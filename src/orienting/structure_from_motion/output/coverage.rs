@@ -14,6 +14,7 @@ use crate::orienting::structure_from_motion::block::Pose;
 use crate::orienting::structure_from_motion::intrinsics::Intrinsics;
 use crate::orienting::structure_from_motion::resection::linearised;
 use crate::orienting::structure_from_motion::triangulation::angle;
+use crate::photographs::camera::FEWEST_VIEWS;
 
 /// Cells along the longer side of the area, of which each has a mark on a plan.
 const CELLS: f64 = 32.0;
@@ -21,10 +22,6 @@ const CELLS: f64 = 32.0;
 /// So many of a hundred points on each side of the area in east and in north lie outside of it: far
 /// ones that flat rays show.
 const OUTSIDE_PERCENT: usize = 1;
-
-/// Photographs that must show a place, for roofs to be found there (B99 2: multiple images, three
-/// or more).
-const FEWEST_VIEWS: usize = 3;
 
 /// From so many on more do not find more facets; of those above 10 m2 three and four photographs
 /// find 86 of 100, five and more 94 (docs/results/fresh-seeds.md).

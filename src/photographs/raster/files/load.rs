@@ -102,10 +102,12 @@ pub(super) fn decode(file: &str, bytes: Excerpt) -> Result<Samples> {
         let samples = decoder
             .samples()
             .map_err(|e| unreadable(file, &e.to_string()))?;
-        samples.ok_or_else(|| Error::File {
-            file: file.to_owned(),
-            problem: "it holds floating-point values, whose range is unknown".to_owned(),
-            advice: "convert it to 8 or 16 bits per channel".to_owned(),
+        samples.ok_or_else(|| {
+            Error::file(
+                file,
+                "it holds floating-point values, whose range is unknown",
+                "convert it to 8 or 16 bits per channel",
+            )
         })
     })
 }
@@ -131,11 +133,11 @@ pub(super) fn refusing_panics<T>(file: &str, read: impl FnOnce() -> Result<T>) -
 fn refuse_unread(file: &str, bytes: Excerpt) -> Result<()> {
     match unread_image_format(file, bytes) {
         None => Ok(()),
-        Some(format) => Err(Error::File {
-            file: file.to_owned(),
-            problem: format!("it is {}, which is not read", format.name),
-            advice: format.advice.to_owned(),
-        }),
+        Some(format) => Err(Error::file(
+            file,
+            format!("it is {}, which is not read", format.name),
+            format.advice,
+        )),
     }
 }
 
@@ -188,14 +190,14 @@ fn decoder<'a>(file: &str, excerpt: Excerpt<'a>) -> Result<Box<dyn SampleSource 
 fn check_size(file: &str, bytes: Excerpt, (width, height): (u32, u32)) -> Result<()> {
     let pixels = u64::from(width) * u64::from(height);
     if pixels > MAX_PIXELS || pixels == 0 {
-        return Err(Error::File {
-            file: file.to_owned(),
-            problem: format!("{width} x {height} pixels"),
-            advice: format!(
+        return Err(Error::file(
+            file,
+            format!("{width} x {height} pixels"),
+            format!(
                 "cut out the part of interest (at most {} megapixels an image)",
                 MAX_PIXELS / 1_000_000
             ),
-        });
+        ));
     }
     if pixels / jpeg::MOST_PIXELS_PER_BYTE as u64 > bytes.length() {
         let problem = format!(
@@ -226,11 +228,11 @@ fn limited<'a>(
 }
 
 fn unreadable(file: &str, problem: &str) -> Error {
-    Error::File {
-        file: file.to_owned(),
-        problem: format!("the image cannot be read: {problem}"),
-        advice: "save it as JPEG, PNG or TIFF (8 or 16 bits)".to_owned(),
-    }
+    Error::file(
+        file,
+        format!("the image cannot be read: {problem}"),
+        "save it as JPEG, PNG or TIFF (8 or 16 bits)",
+    )
 }
 
 #[cfg(test)]

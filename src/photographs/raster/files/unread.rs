@@ -173,7 +173,12 @@ fn raw_in_tiff(excerpt: Excerpt) -> Option<UnreadImageFormat> {
         if directory.raw(tags::DNG_VERSION).is_some() {
             return Some(DNG);
         }
-        if is_raw(&directory) || directory.below().take(MOST_DIRECTORIES).any(|d| is_raw(&d)) {
+        if is_raw(&directory)
+            || directory
+                .below(tags::SUB_IFDS)
+                .take(MOST_DIRECTORIES)
+                .any(|d| is_raw(&d))
+        {
             return Some(RAW);
         }
     }

@@ -1,7 +1,7 @@
 //! 3D lines by clustering (W96 3.5).
 
-use super::super::{Findings, Outcome, Results, Stage, StageDefinition};
-use super::super::{is_any, required, to_bytes, untraced, warn_if};
+use super::super::{Findings, Outcome, Packing, Results, Stage, StageDefinition};
+use super::super::{is_any, required, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
@@ -20,6 +20,7 @@ impl StageDefinition for Clusters {
     const SECTION: &'static str = "W96 3.5";
     const READS: &'static [&'static str] = &["objectspace.clusters"];
     const NEEDS: &'static [Stage] = &[Stage::Regions, Stage::Directions];
+    const PACKING: Option<Packing<Found>> = Some(Found::VALUE);
     const SHARD_MAPS: &'static [&'static str] = &["clusters"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
@@ -36,13 +37,5 @@ impl StageDefinition for Clusters {
             counts: vec![("lines", found.value.len())],
             warnings: warn_if(is_empty && is_any(&before.directions), none),
         }
-    }
-
-    fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&found.value)
-    }
-
-    fn unpack(bytes: &[u8]) -> Option<Found> {
-        untraced(bytes)
     }
 }

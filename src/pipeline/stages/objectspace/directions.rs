@@ -1,7 +1,7 @@
 //! Windows and their main directions (W96 3.4).
 
-use super::super::{Findings, Outcome, Results, Stage, StageDefinition};
-use super::super::{required, to_bytes, untraced, warn_if};
+use super::super::{Findings, Outcome, Packing, Results, Stage, StageDefinition};
+use super::super::{required, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
@@ -26,6 +26,7 @@ impl StageDefinition for Directions {
         "objectspace.planes.min_height_m",
     ];
     const NEEDS: &'static [Stage] = &[Stage::Regions];
+    const PACKING: Option<Packing<Found>> = Some(Found::VALUE);
     const SHARD_MAPS: &'static [&'static str] = &["heights", "tiles", "ground"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
@@ -43,13 +44,5 @@ impl StageDefinition for Directions {
             ],
             warnings: warn_if(pairs == 0, none),
         }
-    }
-
-    fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&found.value)
-    }
-
-    fn unpack(bytes: &[u8]) -> Option<Found> {
-        untraced(bytes)
     }
 }

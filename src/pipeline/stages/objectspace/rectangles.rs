@@ -1,6 +1,6 @@
 //! Planes between parallel lines and the closed buildings below them (W96 3.6).
 
-use super::super::{Findings, Outcome, Proposals, Results, Stage, StageDefinition};
+use super::super::{Findings, Outcome, Packing, Proposals, Results, Stage, StageDefinition};
 use super::super::{from_bytes, is_any, required, to_bytes, warn_if};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
@@ -27,6 +27,19 @@ impl StageDefinition for Rectangles {
         Stage::Clusters,
         Stage::Ground,
     ];
+    /// What facets are made of: the planes, not the buildings.
+    const PACKING: Option<Packing<Found>> = Some(Packing {
+        pack: |found| to_bytes(&(&found.trace.candidates, &found.trace.chosen)),
+        unpack: |bytes| {
+            let (candidates, chosen) = from_bytes(bytes)?;
+            let trace = RectangleTrace {
+                candidates,
+                chosen,
+                ..RectangleTrace::default()
+            };
+            Some((RoofModel::default(), trace).into())
+        },
+    });
     const PROPOSALS: Proposals<Found> = Some(|found| proposed_planes(&found.trace));
     const SHARD_MAPS: &'static [&'static str] = &["planes", "behind"];
 
@@ -52,20 +65,5 @@ impl StageDefinition for Rectangles {
             ],
             warnings: warn_if(is_empty && is_any(&before.clusters), none),
         }
-    }
-
-    /// What facets are made of: the planes, not the buildings.
-    fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&(&found.trace.candidates, &found.trace.chosen))
-    }
-
-    fn unpack(bytes: &[u8]) -> Option<Found> {
-        let (candidates, chosen) = from_bytes(bytes)?;
-        let trace = RectangleTrace {
-            candidates,
-            chosen,
-            ..RectangleTrace::default()
-        };
-        Some((RoofModel::default(), trace).into())
     }
 }

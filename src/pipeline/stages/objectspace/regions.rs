@@ -1,6 +1,6 @@
 //! Regions with straight boundaries in every view (W96 3.3).
 
-use super::super::{Findings, Outcome, Results, Stage, StageDefinition, to_bytes, untraced};
+use super::super::{Findings, Outcome, Packing, Results, Stage, StageDefinition};
 use crate::base::execution::Sharded;
 use crate::base::params::Params;
 use crate::orienting::scene::Scene;
@@ -19,6 +19,7 @@ impl StageDefinition for Regions {
     const SECTION: &'static str = "W96 3.3";
     const READS: &'static [&'static str] = &["objectspace.oris"];
     const NEEDS: &'static [Stage] = &[];
+    const PACKING: Option<Packing<Found>> = Some(Found::VALUE);
     const SHARD_MAPS: &'static [&'static str] = &["views"];
     const SHARDS_READ_COLOURS: bool = true;
 
@@ -43,13 +44,5 @@ impl StageDefinition for Regions {
             ],
             warnings: warnings.collect(),
         }
-    }
-
-    fn pack(found: &Found) -> Vec<u8> {
-        to_bytes(&found.value)
-    }
-
-    fn unpack(bytes: &[u8]) -> Option<Found> {
-        untraced(bytes)
     }
 }

@@ -73,10 +73,15 @@ fn conflict_groups(conflicts: &[Vec<usize>]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// Branch and bound over a conflict_group, the heaviest first.
-fn exact(conflict_group: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
+fn heaviest_first(conflict_group: &[usize], weights: &[f64]) -> Vec<usize> {
     let mut order = conflict_group.to_vec();
     order.sort_by(|&a, &b| weights[b].total_cmp(&weights[a]).then(a.cmp(&b)));
+    order
+}
+
+/// Branch and bound over a conflict_group, the heaviest first.
+fn exact(conflict_group: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
+    let order = heaviest_first(conflict_group, weights);
     let mut best = (0.0, Vec::new());
     branch(&order, conflicts, weights, 0.0, &mut Vec::new(), &mut best);
     best.1
@@ -121,8 +126,7 @@ fn branch(
 /// Greedy, then exchanges: one candidate for those that it excludes, or several for the one that
 /// excludes them.
 fn exchanged(conflict_group: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
-    let mut order = conflict_group.to_vec();
-    order.sort_by(|&a, &b| weights[b].total_cmp(&weights[a]).then(a.cmp(&b)));
+    let order = heaviest_first(conflict_group, weights);
     let mut inside = vec![false; conflicts.len()];
     // Each exchange raises the sum, so this ends.
     loop {

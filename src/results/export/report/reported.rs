@@ -6,7 +6,6 @@ use serde_json::{Value, json};
 use super::super::format::rounded;
 use crate::base::geometry::mean_point;
 use crate::base::math::{atan2, cos};
-use crate::orienting::known::Known;
 use crate::orienting::scene::{Scene, Survey};
 use crate::results::roof_report::{
     BuildingReport, Estimate, FacetReport, SetbackRule, Sunshine, sunshine,
@@ -76,13 +75,9 @@ impl ReportedModel {
     /// The place of the model, without photographs.
     pub fn scene(&self) -> Scene {
         Scene {
-            views: Vec::new(),
             origin: self.origin,
-            ground_z: None,
-            region: None,
-            known: Known::default(),
-            warnings: Vec::new(),
             survey: self.survey.clone(),
+            ..Scene::default()
         }
     }
 

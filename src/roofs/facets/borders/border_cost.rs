@@ -15,6 +15,7 @@ use crate::base::geometry::Plane;
 use crate::base::labelling::{NO_PLANE, PairwiseCosts};
 use crate::base::math::{larger, smaller};
 use crate::base::params::RoofParams;
+use crate::planes::grouping::propagated::LEAST_SLOPE_SINE;
 
 /// The costs of all borders of an arrangement.
 pub(crate) struct BorderCosts {
@@ -176,8 +177,6 @@ const SAME_PLANE_COSINE: f64 = 0.994_521_895_368_273_3;
 /// Share of the cost of a border where two planes meet without a line. Measured: 0.1 breaks roofs
 /// into more pieces.
 pub(super) const CREASE: f64 = 0.3;
-/// Sine of the least slope that has a top (6 degrees).
-const LEAST_SLOPE_SINE: f64 = 0.1;
 /// Planes meet when their heights differ by less, metres.
 pub(super) const MEETING_HEIGHT_M: f64 = 0.25;
 /// A line lies in a plane's border when their heights differ by less, metres.

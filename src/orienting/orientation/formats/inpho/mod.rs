@@ -25,6 +25,7 @@ use super::text::TextLine;
 use crate::base::error::{Error, Result};
 use crate::base::math;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
+use crate::orienting::orientation::input_file::base_name;
 use crate::photographs::camera::Distortion;
 
 /// Reads the photos of a project.
@@ -84,11 +85,8 @@ impl InteriorOrientation {
         let side = |key: &str| -> Result<u32> {
             let [value] = camera.numbers::<1>(key)?;
             let whole = value.fract() == 0.0 && (1.0..=4e9).contains(&value);
-            whole.then_some(value as u32).ok_or_else(|| {
-                camera
-                    .start
-                    .error(format!("${key} is {value}"), "whole pixels")
-            })
+            let wrong = || (camera.start).error(format!("${key} is {value}"), "whole pixels");
+            whole.then_some(value as u32).ok_or_else(wrong)
         };
         let shift = match camera.word("PIXEL_REFERENCE") {
             Some(point) if !point.starts_with("Center") => 0.0,
@@ -138,17 +136,9 @@ impl InteriorOrientation {
     fn pixel_from_direction(&self) -> Matrix3<f64> {
         let a = self.pixel_from_mm * self.focal_mm;
         let p = self.pixel_from_mm * self.principal_mm + self.pixel_of_zero;
-        Matrix3::new(
-            a[(0, 0)],
-            a[(0, 1)],
-            -p.x,
-            a[(1, 0)],
-            a[(1, 1)],
-            -p.y,
-            0.0,
-            0.0,
-            -1.0,
-        )
+        let mut pixel = a.to_homogeneous();
+        pixel.set_column(2, &Vector3::new(-p.x, -p.y, -1.0));
+        pixel
     }
 }
 
@@ -174,13 +164,18 @@ fn orientation(
         .word("PHOTO_FILE")
         .or(photo.word("PHOTO_NUM"))
         .unwrap_or_default();
-    let image = file.rsplit(['/', '\\']).next().unwrap_or(file);
-    let source = format!("{}, line {}", photo.start.file, photo.start.number);
+    let source = photo.start.place();
     let (k, distortion) = with_lens(photo, k, interior)?;
     Ok(Orientation {
         size: Some(interior.size),
         distortion,
-        ..pinhole(image, &source, k, r, Point3::new(n[1], n[2], n[3]))
+        ..pinhole(
+            base_name(file),
+            &source,
+            k,
+            r,
+            Point3::new(n[1], n[2], n[3]),
+        )
     })
 }
 

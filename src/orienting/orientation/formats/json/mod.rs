@@ -14,19 +14,15 @@ fn parse<T: DeserializeOwned>(path: &str, text: &str) -> Result<T> {
     serde_json::from_str(text).map_err(|e| {
         let message = e.to_string();
         let problem = message.split(" at line ").next().unwrap_or_default();
-        Error::Line {
-            file: path.to_owned(),
-            line: e.line().max(1),
-            problem: quoted_long(problem),
-            expected: "the JSON that the program writes".to_owned(),
-        }
+        let expected = "the JSON that the program writes";
+        Error::line(path, e.line().max(1), quoted_long(problem), expected)
     })
 }
 
 fn refuse(path: &str, problem: &str) -> Error {
-    Error::File {
-        file: path.to_owned(),
-        problem: quoted_long(problem),
-        advice: "export perspective cameras; images of other lenses undistorted".to_owned(),
-    }
+    Error::file(
+        path,
+        quoted_long(problem),
+        "export perspective cameras; images of other lenses undistorted",
+    )
 }

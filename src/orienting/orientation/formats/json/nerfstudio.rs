@@ -5,11 +5,13 @@
 //! Intrinsics are stated once or per frame; NeRF's and Blender's form states one angle alone and
 //! leaves the size to the images.
 
-use nalgebra::{Matrix3, Matrix4, Point3, Vector3};
+use nalgebra::{Matrix3, Matrix4, Point3};
 use serde::Deserialize;
+use serde_json::{Map, Value};
 
 use super::{parse, refuse};
 use crate::base::error::{Error, Result};
+use crate::orienting::orientation::angles::Y_UP;
 use crate::orienting::orientation::formats::left_out::LeftOut;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 use crate::photographs::camera::{Distortion, Projection};
@@ -35,8 +37,11 @@ pub(crate) fn read(
     }
     let (mut found, mut left_out) = (Vec::new(), LeftOut::default());
     for frame in &file.frames {
-        let mut lens = frame.lens.or(&file.lens);
-        if let (None, Some([w, h])) = (lens.w.or(lens.fl_x), size_of(&frame.file_path)) {
+        let lens = NerfstudioCamera::of(&frame.lens, &file.lens);
+        let mut lens = lens.map_err(|e| refuse(path, &format!("{}: {e}", frame.file_path)))?;
+        if lens.w.or(lens.fl_x).is_none()
+            && let Some([w, h]) = size_of(&frame.file_path)
+        {
             (lens.w, lens.h) = (Some(f64::from(w)), Some(f64::from(h)));
         }
         let k = match lens.k(path, &frame.file_path) {
@@ -53,8 +58,7 @@ pub(crate) fn read(
         }
         let pose = undo * pose;
         let turned = pose.fixed_view::<3, 3>(0, 0).into_owned();
-        let axes = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
-        let r = axes * (turned / turned.column(0).norm()).transpose();
+        let r = Y_UP * (turned / turned.column(0).norm()).transpose();
         let center = Point3::new(pose[(0, 3)], pose[(1, 3)], pose[(2, 3)]);
         found.push(Orientation {
             distortion: lens.distortion(),
@@ -68,7 +72,7 @@ pub(crate) fn read(
 #[derive(Deserialize)]
 struct NerfstudioTransforms {
     #[serde(flatten)]
-    lens: NerfstudioCamera,
+    lens: Map<String, Value>,
     applied_transform: Option<Vec<[f64; 4]>>,
     applied_scale: Option<f64>,
     frames: Vec<NerfstudioFrame>,
@@ -79,10 +83,10 @@ struct NerfstudioFrame {
     file_path: String,
     transform_matrix: Vec<[f64; 4]>,
     #[serde(flatten)]
-    lens: NerfstudioCamera,
+    lens: Map<String, Value>,
 }
 
-#[derive(Clone, Deserialize)]
+#[derive(Deserialize)]
 struct NerfstudioCamera {
     camera_model: Option<String>,
     is_fisheye: Option<bool>,
@@ -103,29 +107,14 @@ struct NerfstudioCamera {
 }
 
 impl NerfstudioCamera {
-    /// What a frame leaves out is stated once for all frames.
-    fn or(&self, all: &Self) -> Self {
-        Self {
-            camera_model: self
-                .camera_model
-                .clone()
-                .or_else(|| all.camera_model.clone()),
-            is_fisheye: self.is_fisheye.or(all.is_fisheye),
-            camera_angle_x: self.camera_angle_x.or(all.camera_angle_x),
-            camera_angle_y: self.camera_angle_y.or(all.camera_angle_y),
-            fl_x: self.fl_x.or(all.fl_x),
-            fl_y: self.fl_y.or(all.fl_y),
-            cx: self.cx.or(all.cx),
-            cy: self.cy.or(all.cy),
-            w: self.w.or(all.w),
-            h: self.h.or(all.h),
-            k1: self.k1.or(all.k1),
-            k2: self.k2.or(all.k2),
-            k3: self.k3.or(all.k3),
-            k4: self.k4.or(all.k4),
-            p1: self.p1.or(all.p1),
-            p2: self.p2.or(all.p2),
-        }
+    /// Of a frame: what it leaves out is stated once for all.
+    fn of(frame: &Map<String, Value>, all: &Map<String, Value>) -> serde_json::Result<Self> {
+        let own = frame.iter().filter(|(_, value)| !value.is_null());
+        let both = all
+            .iter()
+            .chain(own)
+            .map(|(key, value)| (key.clone(), value.clone()));
+        Self::deserialize(Value::Object(both.collect()))
     }
 
     fn k(&self, path: &str, image: &str) -> Result<Matrix3<f64>> {
@@ -188,26 +177,23 @@ impl NerfstudioCamera {
 }
 
 fn unsupported_model(path: &str, image: &str, model: &str) -> Error {
-    refuse(
-        path,
-        &format!("{image} has the camera model \"{model}\", which is not read"),
-    )
+    let problem = format!("{image} has the camera model \"{model}\", which is not read");
+    refuse(path, &problem)
 }
 
 /// Three rows or four of a 4 x 4 matrix; what is missing is that of the identity.
 fn homogeneous(rows: &[[f64; 4]]) -> Matrix4<f64> {
     let identity = Matrix4::identity();
-    Matrix4::from_fn(|i, j| {
-        if i < 3 {
-            rows.get(i).map_or(f64::NAN, |r| r[j])
-        } else {
-            identity[(i, j)]
-        }
+    Matrix4::from_fn(|i, j| match i {
+        3 => identity[(i, j)],
+        _ => rows.get(i).map_or(f64::NAN, |row| row[j]),
     })
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::*;
     use crate::base::math;
 

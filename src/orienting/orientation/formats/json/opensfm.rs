@@ -16,6 +16,7 @@ use super::{parse, refuse};
 use crate::base::error::{Error, Result, listed};
 use crate::base::geometry::rotation_from_axis_angle;
 use crate::orienting::orientation::formats::left_out::LeftOut;
+use crate::orienting::orientation::formats::of_group;
 use crate::orienting::orientation::formats::text::quoted_long;
 use crate::orienting::orientation::geodesy::Anchor;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
@@ -75,24 +76,14 @@ pub(crate) fn reference(text: &str, lla: Option<&str>, group: Option<&str>) -> S
         shots: BTreeMap<String, IgnoredAny>,
     }
     let models: Vec<Anchored> = parse("", text).unwrap_or_default();
-    let sorted = by_size(models.iter().map(|m| m.shots.len()), &models);
-    let mut sorted: Vec<(Option<String>, &Anchored)> = sorted.collect();
-    let wanted = sorted
-        .iter()
-        .position(|(label, _)| group.is_some() && label.as_deref() == group);
-    let model = match wanted {
-        Some(i) => Some(sorted.swap_remove(i)),
-        None => sorted.pop(),
-    };
-    let own = model.and_then(|(_, model)| model.reference_lla.as_ref()?.anchor());
-    let beside = || {
-        let lla: Lla = parse("", lla?).ok()?;
-        lla.anchor()
-    };
-    match own.or_else(beside) {
-        Some(anchor) => StatedReference::Place(anchor),
-        None => StatedReference::None,
-    }
+    let model = of_group(
+        by_size(models.iter().map(|m| m.shots.len()), &models),
+        group,
+    );
+    let own = model.and_then(|model| model.reference_lla.as_ref()?.anchor());
+    let beside = || parse::<Lla>("", lla?).ok()?.anchor();
+    own.or_else(beside)
+        .map_or(StatedReference::None, StatedReference::Place)
 }
 
 #[derive(Deserialize)]
@@ -192,20 +183,13 @@ fn unknown_camera(
     camera: &str,
     cameras: &BTreeMap<String, Value>,
 ) -> Error {
-    let names: Vec<&String> = cameras.keys().collect();
-    Error::File {
-        file: path.to_owned(),
-        problem: quoted_long(&format!(
-            "{image} names the camera \"{camera}\", which is not in it"
-        )),
-        advice: match names.is_empty() {
-            true => "it holds no camera: take the file of the same run".to_owned(),
-            false => quoted_long(&format!(
-                "it has {}: take the file of the same run",
-                listed(&names)
-            )),
-        },
-    }
+    let problem = format!("{image} names the camera \"{camera}\", which is not in it");
+    let held = match cameras.is_empty() {
+        true => "it holds no camera".to_owned(),
+        false => format!("it has {}", listed(cameras.keys())),
+    };
+    let advice = format!("{held}: take the file of the same run");
+    Error::file(path, quoted_long(&problem), quoted_long(&advice))
 }
 
 /// The camera that a shot without name was taken with: ODM copies size and focal length from it.
@@ -222,22 +206,15 @@ fn only_fitting<'a>(
             && focal == shot.focal
     };
     let mut fitting = cameras.iter().filter(|(_, camera)| fits(camera));
-    match (fitting.next(), fitting.next()) {
-        (Some(one), None) => Ok(one),
-        (first, _) => Err(Error::File {
-            file: path.to_owned(),
-            problem: quoted_long(&format!(
-                "{} names no camera, and {} has its size and focal length",
-                shot.filename,
-                if first.is_some() {
-                    "more than one"
-                } else {
-                    "none"
-                }
-            )),
-            advice: "take the shots and the cameras of the same run".to_owned(),
-        }),
-    }
+    let count = match (fitting.next(), fitting.next()) {
+        (Some(one), None) => return Ok(one),
+        (Some(_), _) => "more than one",
+        (None, _) => "none",
+    };
+    let name = &shot.filename;
+    let problem = format!("{name} names no camera, and {count} has its size and focal length");
+    let advice = "take the shots and the cameras of the same run";
+    Err(Error::file(path, quoted_long(&problem), advice))
 }
 
 #[derive(Deserialize)]
@@ -277,7 +254,7 @@ struct OdmShotProperties {
     rotation: [f64; 3],
 }
 
-#[derive(Clone, Deserialize)]
+#[derive(Deserialize)]
 struct OpenSfmCamera {
     projection_type: String,
     width: u32,
@@ -285,33 +262,27 @@ struct OpenSfmCamera {
     focal: Option<f64>,
     focal_x: Option<f64>,
     focal_y: Option<f64>,
-    #[serde(default)]
+    #[serde(flatten)]
+    terms: OpenSfmTerms,
+}
+
+/// Principal point and lens: what is missing is zero.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct OpenSfmTerms {
     c_x: f64,
-    #[serde(default)]
     c_y: f64,
-    #[serde(default)]
     k1: f64,
-    #[serde(default)]
     k2: f64,
-    #[serde(default)]
     k3: f64,
-    #[serde(default)]
     k4: f64,
-    #[serde(default)]
     k5: f64,
-    #[serde(default)]
     k6: f64,
-    #[serde(default)]
     p1: f64,
-    #[serde(default)]
     p2: f64,
-    #[serde(default)]
     s0: f64,
-    #[serde(default)]
     s1: f64,
-    #[serde(default)]
     s2: f64,
-    #[serde(default)]
     s3: f64,
 }
 
@@ -329,20 +300,7 @@ impl OpenSfmCamera {
             focal: shot.focal,
             focal_x: None,
             focal_y: None,
-            c_x: 0.0,
-            c_y: 0.0,
-            k1: 0.0,
-            k2: 0.0,
-            k3: 0.0,
-            k4: 0.0,
-            k5: 0.0,
-            k6: 0.0,
-            p1: 0.0,
-            p2: 0.0,
-            s0: 0.0,
-            s1: 0.0,
-            s2: 0.0,
-            s3: 0.0,
+            terms: OpenSfmTerms::default(),
         })
     }
 
@@ -356,17 +314,14 @@ impl OpenSfmCamera {
 
     fn k(&self, path: &str, (width, height): (u32, u32)) -> Result<Matrix3<f64>> {
         // Of the larger fisheye models the terms that all agree on.
-        let has_further = [self.p1, self.p2, self.s0, self.s1, self.s2, self.s3] != [0.0; 6];
+        let t = &self.terms;
+        let has_further = [t.p1, t.p2, t.s0, t.s1, t.s2, t.s3] != [0.0; 6];
         let is_perspective =
             ["perspective", "brown", "simple_radial", "radial"].contains(&&*self.projection_type);
         if !is_perspective && (!self.is_fisheye() || has_further) {
-            return Err(refuse(
-                path,
-                &format!(
-                    "the projection type {:?} is not supported",
-                    self.projection_type
-                ),
-            ));
+            let kind = &self.projection_type;
+            let problem = format!("the projection type {kind:?} is not supported");
+            return Err(refuse(path, &problem));
         }
         let longer = f64::from(width.max(height));
         let fx = self.focal_x.or(self.focal);
@@ -374,18 +329,9 @@ impl OpenSfmCamera {
             return Err(refuse(path, "a camera has neither focal nor focal_x"));
         };
         let middle = |size: u32, offset: f64| f64::from(size) / 2.0 + offset * longer;
-        let (cx, cy) = (middle(width, self.c_x), middle(height, self.c_y));
-        Ok(Matrix3::new(
-            fx * longer,
-            0.0,
-            cx,
-            0.0,
-            fy * longer,
-            cy,
-            0.0,
-            0.0,
-            1.0,
-        ))
+        let (cx, cy) = (middle(width, t.c_x), middle(height, t.c_y));
+        let [fx, fy] = [fx, fy].map(|f| f * longer);
+        Ok(Matrix3::new(fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0))
     }
 
     fn is_fisheye(&self) -> bool {
@@ -393,14 +339,12 @@ impl OpenSfmCamera {
     }
 
     fn distortion(&self) -> Option<Distortion> {
-        match self.is_fisheye() {
-            true => Distortion::lens(
-                Projection::Equidistant,
-                [self.k1, self.k2, self.k3, self.k4, self.k5, self.k6],
-                [0.0; 2],
-            ),
-            false => Distortion::brown([self.k1, self.k2, self.k3], [self.p1, self.p2]),
+        let t = &self.terms;
+        if self.is_fisheye() {
+            let radial = [t.k1, t.k2, t.k3, t.k4, t.k5, t.k6];
+            return Distortion::lens(Projection::Equidistant, radial, [0.0; 2]);
         }
+        Distortion::brown([t.k1, t.k2, t.k3], [t.p1, t.p2])
     }
 }
 

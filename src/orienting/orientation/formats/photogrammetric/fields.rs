@@ -42,11 +42,6 @@ pub(super) fn cells(text: &str, separator: Separator) -> Vec<&str> {
     found
 }
 
-/// Is a field a number with a decimal point?
-pub(super) fn is_number(field: &str) -> bool {
-    field.parse::<f64>().is_ok()
-}
-
 pub(super) fn is_whole(field: &str) -> bool {
     !field.is_empty() && field.bytes().all(|b| b.is_ascii_digit())
 }

@@ -7,6 +7,7 @@ use nalgebra::Matrix3;
 use crate::base::error::{Error, Result};
 use crate::orienting::orientation::formats::text::{TextLine, data_lines, quoted};
 use crate::orienting::orientation::image_orientation::Crop;
+use crate::orienting::orientation::input_file::stem;
 
 /// Part of the frame that a view shows, pixels.
 #[derive(Clone, Copy)]
@@ -30,21 +31,9 @@ impl CameraFrame {
     /// The part that an image shows: its name in the camera file may have another extension, or
     /// none.
     pub(crate) fn part_of(&self, image: &str) -> &FramePart {
-        let stem = |name: &str| {
-            name.rsplit_once('.')
-                .map_or(name, |(stem, _)| stem)
-                .to_owned()
-        };
-        let alike = || {
-            self.crops
-                .iter()
-                .find(|(name, _)| stem(name) == stem(image))
-        };
-        let found = self
-            .crops
-            .get(image)
-            .or_else(|| alike().map(|(_, part)| part));
-        found.unwrap_or(&self.whole)
+        let alike = || (self.crops.iter()).find(|(name, _)| stem(name) == stem(image));
+        let named = self.crops.get(image);
+        named.or_else(|| Some(alike()?.1)).unwrap_or(&self.whole)
     }
 
     /// Calibration of a part, pixels.
@@ -90,17 +79,17 @@ pub(crate) fn read_frame(
             values[i] = Some((line, read_values(&line, &fields, &KEYS[i].1)?));
         } else {
             warnings.push(format!(
-                "{file}, line {}: {} is not a known key and was ignored",
-                line.number,
+                "{}: {} is not a known key and was ignored",
+                line.place(),
                 quoted(fields[0])
             ));
         }
     }
     let require = |i: usize| {
-        values[i].as_ref().ok_or_else(|| Error::File {
-            file: file.to_owned(),
-            problem: format!("the key {} is missing", KEYS[i].0),
-            advice: format!("add a line `{} ...`", KEYS[i].0),
+        let key = KEYS[i].0;
+        values[i].as_ref().ok_or_else(|| {
+            let advice = format!("add a line `{key} ...`");
+            Error::file(file, format!("the key {key} is missing"), advice)
         })
     };
     let (distance, pixel, size) = (require(0)?, require(2)?, require(3)?);
@@ -134,14 +123,9 @@ fn read_values(
     count: &std::ops::RangeInclusive<usize>,
 ) -> Result<Vec<f64>> {
     if !count.contains(&(fields.len() - 1)) {
-        return Err(line.error(
-            format!("{} has {} values", fields[0], fields.len() - 1),
-            format!(
-                "{} {}",
-                count.end(),
-                if *count.end() == 1 { "value" } else { "values" }
-            ),
-        ));
+        let problem = format!("{} has {} values", fields[0], fields.len() - 1);
+        let values = if *count.end() == 1 { "value" } else { "values" };
+        return Err(line.error(problem, format!("{} {values}", count.end())));
     }
     line.numbers(&fields[1..], fields[0])
 }
@@ -157,10 +141,7 @@ fn whole_px(line: &TextLine, value: f64) -> Result<u32> {
 /// The name may hold blanks: the four numbers stand at the end.
 fn read_crop(line: &TextLine, fields: &[&str]) -> Result<(String, FramePart)> {
     let [_, first, others @ .., column, row, width, height] = fields else {
-        return Err(line.error(
-            format!("{} fields", fields.len()),
-            "crop NAME column row width height",
-        ));
+        return Err(line.miscounted(fields.len(), "crop NAME column row width height"));
     };
     let name = [&[*first], others].concat().join(" ");
     let crop = FramePart {

@@ -1,6 +1,7 @@
 //! The columns that the heading of a list names, in the words of programs and languages.
 
-use super::fields::{Separator, cells, is_number};
+use super::fields::{Separator, cells};
+use crate::orienting::orientation::formats::text::is_number;
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,10 +9,10 @@ use std::collections::BTreeSet;
 
 use nalgebra::Point3;
 
-use super::fields::{Separator, cells, is_number, is_whole};
+use super::fields::{Separator, cells, is_whole};
 use super::heading::{AngleKind, Columns, Heading, heading};
 use crate::base::error::{Error, Result};
-use crate::orienting::orientation::formats::text::{TextLine, lines, quoted};
+use crate::orienting::orientation::formats::text::{TextLine, is_number, lines, quoted};
 
 /// What a line should hold.
 const EXPECTED: &str = "image X0 Y0 Z0 omega phi kappa";
@@ -54,11 +54,11 @@ pub(super) struct ExteriorList {
 pub(super) fn read(path: &str, text: &str) -> Result<ExteriorList> {
     let parts = Parts::of(path, text);
     if parts.data.is_empty() {
-        return Err(Error::File {
-            file: path.to_owned(),
-            problem: "it lists no image".to_owned(),
-            advice: format!("add lines `{EXPECTED}`"),
-        });
+        return Err(Error::file(
+            path,
+            "it lists no image",
+            format!("add lines `{EXPECTED}`"),
+        ));
     }
     let (columns, unknown) = parts.columns()?;
     let form = parts.form(columns.as_ref());
@@ -116,11 +116,8 @@ pub(crate) fn is_list(text: &str) -> bool {
 pub(crate) fn nearly_a_list(path: &str, text: &str) -> Option<Error> {
     let parts = Parts::of(path, text);
     let looks_alike = |line: &&TextLine| {
-        let numbers = line
-            .text
-            .split([' ', '\t', ',', ';'])
-            .filter(|f| is_number(f))
-            .count();
+        let fields = line.text.split([' ', '\t', ',', ';']);
+        let numbers = fields.filter(|f| is_number(f)).count();
         (3..40).contains(&numbers) && line.text.contains(char::is_alphabetic)
     };
     let alike = parts.sample().iter().filter(looks_alike).count();
@@ -268,23 +265,17 @@ fn pose(line: &TextLine, form: &Form) -> Result<Option<ListedPose>> {
     let mut values = [0.0; 6];
     for (i, (value, field)) in values.iter_mut().zip(numbers).enumerate() {
         let what = if i < 3 { "a coordinate" } else { "an angle" };
-        *value = number(field, form.decimal_comma)
-            .filter(|v| v.is_finite())
-            .ok_or_else(|| {
-                line.error(
-                    format!("{what} is {}", quoted(field)),
-                    if form.decimal_comma {
-                        "a finite number with a decimal comma"
-                    } else {
-                        "a finite number with a decimal point"
-                    },
-                )
-            })?;
+        let found = number(field, form.decimal_comma).filter(|v| v.is_finite());
+        *value = found.ok_or_else(|| {
+            let sign = if form.decimal_comma { "comma" } else { "point" };
+            let expected = format!("a finite number with a decimal {sign}");
+            line.error(format!("{what} is {}", quoted(field)), expected)
+        })?;
     }
     let [x, y, z, a, b, c] = values;
     Ok(Some(ListedPose {
         image: image.to_owned(),
-        source: format!("{}, line {}", line.file, line.number),
+        source: line.place(),
         center: Point3::new(x, y, z),
         angles: [a, b, c],
     }))
@@ -304,10 +295,8 @@ fn by_columns<'a>(
     columns: &Columns,
 ) -> Result<(&'a str, [&'a str; 6])> {
     let wrong = || {
-        line.error(
-            format!("{} fields", cells.len()),
-            format!("{} fields as the heading names them", columns.count),
-        )
+        let expected = format!("{} fields as the heading names them", columns.count);
+        line.miscounted(cells.len(), expected)
     };
     let begin = usize::from(form.is_numbered);
     if form.is_numbered && !cells.first().is_some_and(|c| is_whole(c)) {
@@ -338,7 +327,7 @@ fn by_order<'a>(
     cells: &[&'a str],
     form: &Form,
 ) -> Result<(&'a str, [&'a str; 6])> {
-    let wrong = || line.error(format!("{} fields", cells.len()), EXPECTED);
+    let wrong = || line.miscounted(cells.len(), EXPECTED);
     let is_number = |c: &&str| number(c, form.decimal_comma).is_some();
     let begin = usize::from(form.is_numbered);
     let end = match form.separator {
@@ -371,12 +360,12 @@ fn end_of_name(
     }
     let last_word = cells.iter().rposition(|c| !is_number(c));
     let Some(end) = last_word.filter(|&i| i >= begin) else {
-        return Err(line.error(format!("{} fields", cells.len()), EXPECTED));
+        return Err(line.miscounted(cells.len(), EXPECTED));
     };
     // Six numbers, or nine more of the rotation matrix. Else a number may belong to the name.
     match cells.len() - end - 1 {
         6 | 15 => Ok(end),
-        n if n < 6 => Err(line.error(format!("{} fields", cells.len()), EXPECTED)),
+        n if n < 6 => Err(line.miscounted(cells.len(), EXPECTED)),
         n => Err(line.error(
             format!("{n} numbers stand behind the name, which may end with a number of its own"),
             format!("{EXPECTED}, the image with its extension, in quotation marks or before a tab"),

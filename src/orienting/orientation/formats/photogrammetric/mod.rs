@@ -30,7 +30,7 @@ use crate::base::error::{Error, Result};
 use crate::orienting::orientation::angles::{
     AngleUnit, rotation_from_omega_phi_kappa, rotation_from_yaw_pitch_roll,
 };
-use crate::orienting::orientation::image_orientation::Orientation;
+use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads the orientations from (path, text) of both files.
 pub(crate) fn read(
@@ -42,11 +42,11 @@ pub(crate) fn read(
     let list = list::read(exterior.0, exterior.1)?;
     let poses = &list.poses;
     if poses.is_empty() {
-        return Err(Error::File {
-            file: exterior.0.to_owned(),
-            problem: "it lists no image with an orientation".to_owned(),
-            advice: "add lines `image X0 Y0 Z0 omega phi kappa`".to_owned(),
-        });
+        return Err(Error::file(
+            exterior.0,
+            "it lists no image with an orientation",
+            "add lines `image X0 Y0 Z0 omega phi kappa`",
+        ));
     }
     if let Some(heading) = &list.unknown_heading {
         warnings.push(format!(
@@ -114,18 +114,9 @@ impl ListedPose {
     fn with_rotation(&self, frame: &CameraFrame, r: Matrix3<f64>) -> Orientation {
         let part = frame.part_of(&self.image);
         Orientation {
-            image: self.image.clone(),
-            source: self.source.clone(),
-            k: frame.k(part),
-            distortion: None,
-            r,
-            center: self.center,
             size: Some(part.size),
-            from_middle: false,
-            angles: None,
-            readings: Vec::new(),
             crop: Some(frame.crop(part)),
-            group: None,
+            ..pinhole(&self.image, &self.source, frame.k(part), r, self.center)
         }
     }
 }

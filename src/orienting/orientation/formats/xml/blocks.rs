@@ -14,10 +14,12 @@ use roxmltree::{Document, Node};
 
 use super::{Sensor, XmlReader, child, parse, text_of};
 use crate::base::error::{Error, Result, listed};
-use crate::orienting::orientation::angles::rotation_from_omega_phi_kappa;
+use crate::orienting::orientation::angles::{Y_UP, rotation_from_omega_phi_kappa};
 use crate::orienting::orientation::formats::left_out::LeftOut;
+use crate::orienting::orientation::formats::of_group;
 use crate::orienting::orientation::geodesy::Anchor;
 use crate::orienting::orientation::image_orientation::{Orientation, pinhole};
+use crate::orienting::orientation::input_file::base_name;
 use crate::orienting::orientation::reference::{StatedReference, epsg_of};
 use crate::photographs::camera::{Distortion, Projection};
 
@@ -48,16 +50,8 @@ pub(crate) fn reference(text: &str, group: Option<&str>) -> StatedReference {
     let Ok(document) = parse("", text) else {
         return StatedReference::None;
     };
-    let mut blocks = blocks(&document);
-    let wanted = blocks
-        .iter()
-        .position(|(label, _)| group.is_some() && label.as_deref() == group);
-    let block = match wanted {
-        Some(i) => Some(blocks.swap_remove(i)),
-        None => blocks.pop(),
-    };
     let systems = systems(&document);
-    let Some((_, block)) = block else {
+    let Some(block) = of_group(blocks(&document), group) else {
         return StatedReference::None;
     };
     let Some(id) = system_of(block) else {
@@ -177,7 +171,7 @@ impl XmlReader<'_> {
             let lens = self.photogroup(group);
             for (photo, rotation, center) in photos(group) {
                 let image = text_of(photo, "ImagePath").unwrap_or_default();
-                let image = image.rsplit(['/', '\\']).next().unwrap_or(image);
+                let image = base_name(image);
                 if is_mixed && is_measured(photo) {
                     unadjusted.push(image);
                     continue;
@@ -221,20 +215,17 @@ impl XmlReader<'_> {
             return Err(self.unknown_model(group, model));
         }
         let image_from_camera = self.axes(group)?;
-        let dimensions = child(group, "ImageDimensions")
-            .ok_or_else(|| self.error(group, "ImageDimensions are missing"))?;
-        let size = (
-            self.number(dimensions, "Width")?,
-            self.number(dimensions, "Height")?,
-        );
+        let dimensions = self.child(group, "ImageDimensions")?;
+        let side = |name: &str| self.number(dimensions, name);
+        let (width, height) = (side("Width")?, side("Height")?);
         let pixel_mm = || match child(group, "PixelSize") {
             Some(_) => self.number(group, "PixelSize"),
             None if child(group, "SensorSize").is_some() => {
-                Ok(self.number(group, "SensorSize")? / size.0.max(size.1))
+                Ok(self.number(group, "SensorSize")? / width.max(height))
             }
             None => Err(self.error(group, "<SensorSize> or <PixelSize> is missing")),
         };
-        let middle = Vector3::new(size.0 / 2.0, size.1 / 2.0, 0.0);
+        let middle = Vector3::new(width / 2.0, height / 2.0, 0.0);
         let principal = match child(group, "PrincipalPoint") {
             Some(p) if child(p, "xmm").is_some() => {
                 let mm = Vector3::new(self.number(p, "xmm")?, self.number(p, "ymm")?, 0.0);
@@ -243,16 +234,18 @@ impl XmlReader<'_> {
             Some(p) => Vector3::new(self.number(p, "x")? + 0.5, self.number(p, "y")? + 0.5, 0.0),
             None => middle,
         };
-        let image_size = (size.0 as u32, size.1 as u32);
+        let size = (width as u32, height as u32);
         if model == "Fisheye" {
             let (mut k, distortion) = self.fisheye(group)?;
             (k[(0, 2)], k[(1, 2)]) = (principal.x, principal.y);
-            let lens = Sensor {
-                k,
-                distortion,
-                size: image_size,
-            };
-            return Ok((lens, image_from_camera));
+            return Ok((
+                Sensor {
+                    k,
+                    distortion,
+                    size,
+                },
+                image_from_camera,
+            ));
         }
         let f = match child(group, "FocalLengthPixels") {
             Some(_) => self.number(group, "FocalLengthPixels")?,
@@ -260,11 +253,13 @@ impl XmlReader<'_> {
         };
         let fy = f * self.number_or(group, "AspectRatio", 1.0)?;
         let skew = self.number_or(group, "Skew", 0.0)?;
+        let k = Matrix3::new(f, skew, principal.x, 0.0, fy, principal.y, 0.0, 0.0, 1.0);
+        let distortion = self.distortion(group)?;
         Ok((
             Sensor {
-                k: Matrix3::new(f, skew, principal.x, 0.0, fy, principal.y, 0.0, 0.0, 1.0),
-                distortion: self.distortion(group)?,
-                size: image_size,
+                k,
+                distortion,
+                size,
             },
             image_from_camera,
         ))
@@ -292,16 +287,11 @@ impl XmlReader<'_> {
     /// Pixels from the principal point are M (x, y) / r of the polynomial P0 + P1 t + ... + P4
     /// t^4 of t = 2 theta / pi, with the matrix M.
     fn fisheye(&self, group: Node) -> Result<(Matrix3<f64>, Option<Distortion>)> {
-        let matrix = child(group, "FisheyeFocalMatrix")
-            .ok_or_else(|| self.error(group, "<FisheyeFocalMatrix> is missing"))?;
+        let matrix = self.child(group, "FisheyeFocalMatrix")?;
         let term = |name: &str| self.number_or(matrix, name, 0.0);
         if term("M_10")? != 0.0 {
-            let problem = "a sheared matrix is not read";
-            return Err(self.refusal(
-                matrix,
-                problem,
-                "M_10 = 0: adjust the fisheye symmetrically",
-            ));
+            let expected = "M_10 = 0: adjust the fisheye symmetrically";
+            return Err(self.refusal(matrix, "a sheared matrix is not read", expected));
         }
         let mut terms = [0.0, 1.0, 0.0, 0.0, 0.0];
         if let Some(lens) = child(group, "FisheyeDistortion") {
@@ -311,12 +301,8 @@ impl XmlReader<'_> {
         }
         // So that the focal length is that of small angles.
         let unit = std::f64::consts::FRAC_PI_2;
-        let [m00, m01, m11] = [
-            self.number(matrix, "M_00")?,
-            term("M_01")?,
-            self.number(matrix, "M_11")?,
-        ]
-        .map(|m| m / unit);
+        let own = |name: &str| self.number(matrix, name);
+        let [m00, m01, m11] = [own("M_00")?, term("M_01")?, own("M_11")?].map(|m| m / unit);
         let of_angle = Projection::OfAngle(terms.map(|p| p * unit));
         Ok((
             Matrix3::new(m00, m01, 0.0, 0.0, m11, 0.0, 0.0, 0.0, 1.0),
@@ -359,8 +345,7 @@ impl XmlReader<'_> {
             let angle = |name: &str| Ok(self.number(node, name)?.to_radians());
             let r = rotation_from_omega_phi_kappa(angle("Omega")?, angle("Phi")?, angle("Kappa")?);
             // That rotation leads to y down, z forward; the format's to y up, z back.
-            let axes = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
-            return Ok(axes * r.into_inner());
+            return Ok(Y_UP * r.into_inner());
         }
         if let Some(angle) = ["Yaw", "Heading", "Pitch", "Roll"]
             .iter()

@@ -24,9 +24,12 @@ pub(crate) struct XmlReader<'a> {
 
 impl XmlReader<'_> {
     pub(crate) fn number(&self, parent: Node, name: &str) -> Result<f64> {
-        let node = child(parent, name)
-            .ok_or_else(|| self.error(parent, &format!("<{name}> is missing")))?;
-        Ok(self.numbers::<1>(node)?[0])
+        Ok(self.numbers::<1>(self.child(parent, name)?)?[0])
+    }
+
+    /// An element that must not be missing.
+    pub(crate) fn child<'a, 'b>(&self, parent: Node<'a, 'b>, name: &str) -> Result<Node<'a, 'b>> {
+        child(parent, name).ok_or_else(|| self.error(parent, &format!("<{name}> is missing")))
     }
 
     pub(crate) fn numbers<const N: usize>(&self, node: Node) -> Result<[f64; N]> {
@@ -49,13 +52,9 @@ impl XmlReader<'_> {
     }
 
     /// An error that says what should stand there.
-    fn refusal(&self, node: Node, problem: &str, expected: &str) -> Error {
-        Error::Line {
-            file: self.path.to_owned(),
-            line: line_of(node),
-            problem: format!("<{}>: {}", node.tag_name().name(), quoted_long(problem)),
-            expected: expected.to_owned(),
-        }
+    pub(crate) fn refusal(&self, node: Node, problem: &str, expected: &str) -> Error {
+        let problem = format!("<{}>: {}", node.tag_name().name(), quoted_long(problem));
+        Error::line(self.path, line_of(node), problem, expected)
     }
 
     /// The number of an element that may be missing.
@@ -80,10 +79,9 @@ pub(crate) fn text_of<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
 }
 
 pub(crate) fn parse<'a>(path: &str, text: &'a str) -> Result<Document<'a>> {
-    Document::parse(text).map_err(|e| Error::Line {
-        file: path.to_owned(),
-        line: e.pos().row as usize,
-        problem: quoted_long(&e.to_string()),
-        expected: "well-formed XML to the end of the file".to_owned(),
+    let expected = "well-formed XML to the end of the file";
+    Document::parse(text).map_err(|e| {
+        let line = e.pos().row as usize;
+        Error::line(path, line, quoted_long(&e.to_string()), expected)
     })
 }

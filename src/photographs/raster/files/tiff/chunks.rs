@@ -223,15 +223,15 @@ impl<'a> Tiff<'a> {
         }
         let damaged = |problem: String| {
             let what = if layout.is_tiled { "tile" } else { "strip" };
-            Error::File {
-                file: self.file.to_owned(),
-                problem: format!(
+            Error::file(
+                self.file,
+                format!(
                     "the image cannot be read: {what} {} of {} is damaged or cut off ({problem})",
                     index + 1,
                     layout.places.len()
                 ),
-                advice: "copy or convert it again".to_owned(),
-            }
+                "copy or convert it again",
+            )
         };
         let data = self.bytes.get(self.bytes.within(offset, count));
         let data = data.ok_or_else(|| damaged("it was not read".to_owned()))?;

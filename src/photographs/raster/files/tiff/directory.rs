@@ -6,7 +6,7 @@ use super::super::excerpt::Excerpt;
 
 /// The tags that are looked at.
 pub(crate) mod tags {
-    // TIFF 6.0 and its supplements, GeoTIFF, GDAL, DNG.
+    // TIFF 6.0 and its supplements, Exif, GeoTIFF, GDAL, DNG.
     pub(crate) const NEW_SUBFILE_TYPE: u16 = 254;
     pub(crate) const IMAGE_WIDTH: u16 = 256;
     pub(crate) const IMAGE_LENGTH: u16 = 257;
@@ -30,6 +30,8 @@ pub(crate) mod tags {
     pub(crate) const EXTRA_SAMPLES: u16 = 338;
     pub(crate) const SAMPLE_FORMAT: u16 = 339;
     pub(crate) const JPEG_TABLES: u16 = 347;
+    pub(crate) const EXIF: u16 = 34665;
+    pub(crate) const GPS: u16 = 34853;
     pub(crate) const MODEL_PIXEL_SCALE: u16 = 33550;
     pub(crate) const MODEL_TIEPOINT: u16 = 33922;
     pub(crate) const MODEL_TRANSFORMATION: u16 = 34264;
@@ -63,8 +65,7 @@ pub(crate) struct Directory<'a> {
 
 struct Entry {
     tag: u16,
-    /// Bytes of one value; 0 for kinds that hold no whole numbers.
-    size: usize,
+    kind: u16,
     /// Where the values stand.
     place: Range<u64>,
 }
@@ -90,9 +91,9 @@ impl<'a> Directory<'a> {
         .take(MOST_DIRECTORIES)
     }
 
-    /// The directories below this one.
-    pub(crate) fn below(&self) -> impl Iterator<Item = Self> {
-        let offsets = self.numbers(tags::SUB_IFDS).unwrap_or_default();
+    /// The directories that a tag refers to.
+    pub(crate) fn below(&self, tag: u16) -> impl Iterator<Item = Self> {
+        let offsets = self.numbers(tag).unwrap_or_default();
         let count = offsets.len().min(MOST_DIRECTORIES);
         (offsets.into_iter().take(count)).filter_map(|at| Self::at(self.bytes, self.form, at))
     }
@@ -110,26 +111,17 @@ impl<'a> Directory<'a> {
         let entries = bytes.get(start..end)?.chunks_exact(entry_size as usize);
         let entry_starts = (start..end).step_by(entry_size as usize);
         let read = |entry_start: u64, entry: &[u8]| {
-            let tag = u16::try_from(form.number(entry, 0..2)?).ok()?;
-            let (size, bytes_each) = match form.number(entry, 2..4)? {
-                1 | 6 | 7 => (1, 1),
-                2 => (0, 1),
-                3 => (2, 2),
-                4 | 13 => (4, 4),
-                16 | 18 => (8, 8),
-                8 => (0, 2),
-                9 | 11 => (0, 4),
-                _ => (0, 8),
-            };
+            let [tag, kind] = [form.number(entry, 0..2)?, form.number(entry, 2..4)?];
+            let [tag, kind] = [tag as u16, kind as u16];
             let values = entry.len() - value_size as usize..entry.len();
             let count = form.number(entry, 4..values.start)?;
-            let length = count.checked_mul(bytes_each)?;
+            let length = count.checked_mul(size_of(kind) as u64)?;
             let from = match length <= value_size {
                 true => entry_start + values.start as u64,
                 false => form.number(entry, values)?,
             };
             let place = from..from.checked_add(length)?;
-            Some(Entry { tag, size, place })
+            Some(Entry { tag, kind, place })
         };
         Some(Self {
             bytes,
@@ -157,10 +149,39 @@ impl<'a> Directory<'a> {
 
     /// The whole numbers of a tag.
     pub(crate) fn numbers(&self, tag: u16) -> Option<Vec<u64>> {
-        let entry = self.entries.iter().find(|e| e.tag == tag && e.size > 0)?;
+        let is_whole = |e: &&Entry| matches!(e.kind, 1 | 3 | 4 | 6 | 7 | 13 | 16 | 18);
+        let entry = (self.entries.iter()).find(|e| e.tag == tag && is_whole(e))?;
         let values = self.bytes.get(entry.place.clone())?;
-        let number = |value: &[u8]| self.form.number(value, 0..entry.size);
-        values.chunks_exact(entry.size).map(number).collect()
+        let size = size_of(entry.kind);
+        let number = |value: &[u8]| self.form.number(value, 0..size);
+        values.chunks_exact(size).map(number).collect()
+    }
+
+    /// The numbers of a tag, also those with a sign and quotients of two, which may be infinite.
+    pub(crate) fn reals(&self, tag: u16) -> Vec<f64> {
+        let kind = self.entries.iter().find(|e| e.tag == tag).map(|e| e.kind);
+        let signed = |part: u64| f64::from(part as u32 as i32);
+        let parts = |value: &[u8]| {
+            Some([
+                self.form.number(value, 0..4)?,
+                self.form.number(value, 4..8)?,
+            ])
+        };
+        let quotient = |value: &[u8]| match (kind, parts(value)?) {
+            (Some(5), [a, b]) => Some(a as f64 / b as f64),
+            (_, [a, b]) => Some(signed(a) / signed(b)),
+        };
+        let values = self.raw(tag).unwrap_or_default();
+        match kind {
+            Some(5 | 10) => values.chunks_exact(8).filter_map(quotient).collect(),
+            Some(9) => (values.chunks_exact(4))
+                .filter_map(|value| self.form.number(value, 0..4).map(signed))
+                .collect(),
+            _ => {
+                let whole = self.numbers(tag).unwrap_or_default();
+                whole.into_iter().map(|number| number as f64).collect()
+            }
+        }
     }
 
     /// The floating-point values of a tag, of 8 bytes each.
@@ -173,6 +194,16 @@ impl<'a> Directory<'a> {
     /// The first number of a tag.
     pub(crate) fn number(&self, tag: u16) -> Option<u64> {
         self.numbers(tag)?.first().copied()
+    }
+}
+
+/// Bytes of one value of a kind.
+fn size_of(kind: u16) -> usize {
+    match kind {
+        1 | 2 | 6 | 7 => 1,
+        3 | 8 => 2,
+        4 | 9 | 11 | 13 => 4,
+        _ => 8,
     }
 }
 

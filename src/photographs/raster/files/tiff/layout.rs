@@ -65,11 +65,7 @@ const MOST_SAMPLES: u64 = 4_000_000_000;
 impl Layout {
     /// Of the first image of full resolution. `file` is for messages.
     pub(super) fn read(file: &str, bytes: Excerpt) -> Result<Self> {
-        let refuse = |problem: &str, advice: &str| Error::File {
-            file: file.to_owned(),
-            problem: problem.to_owned(),
-            advice: advice.to_owned(),
-        };
+        let refuse = |problem: &str, advice: &str| Error::file(file, problem, advice);
         let mut directories = Directory::chain(bytes).peekable();
         if directories.peek().is_none() {
             let damage =

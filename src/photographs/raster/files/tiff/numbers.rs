@@ -54,11 +54,7 @@ impl Kind {
 impl<'a> NumberRaster<'a> {
     /// Reads the first image of full resolution. `file` is for messages.
     pub(crate) fn read(file: &'a str, bytes: Excerpt<'a>) -> Result<Self> {
-        let refuse = |problem: &str, advice: &str| Error::File {
-            file: file.to_owned(),
-            problem: problem.to_owned(),
-            advice: advice.to_owned(),
-        };
+        let refuse = |problem: &str, advice: &str| Error::file(file, problem, advice);
         let convert = "convert it to a GeoTIFF of one band of 32-bit floating-point numbers";
         let unread = |problem: &str| refuse(problem, convert);
         let damaged = |problem: &str| refuse(problem, "copy or convert it again");
