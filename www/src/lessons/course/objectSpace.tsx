@@ -20,7 +20,7 @@ import {
 import { type Lesson, onScene } from "../parts/lesson";
 import { degrees, metres, num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
-import { byCount, describe, shortest } from "../toy/description";
+import { byCount, describe, shortest, stretchesOf } from "../toy/description";
 import { azimuthHistogram, crossSum, mainDirection, seenLines } from "../toy/directions";
 import { normal, stream } from "../toy/evidence";
 import { aerial } from "../toy/house";
@@ -228,12 +228,6 @@ const own = () => describe(ROW, breaks.value, SIGMA);
 
 function DescriptionFigure({ isRevealed }: { isRevealed: boolean }) {
   const { model, data } = own();
-  const ends = [0, ...breaks.value, PIXELS];
-  const parts = ends.slice(0, -1).map((from, i) => {
-    const to = ends[i + 1] as number;
-    const part = ROW.slice(from, to);
-    return { from, to, mean: part.reduce((sum, one) => sum + one, 0) / part.length };
-  });
   const scale = 480 / describe(ROW, [], SIGMA).total;
   return (
     <>
@@ -249,7 +243,7 @@ function DescriptionFigure({ isRevealed }: { isRevealed: boolean }) {
             {ROW.map((value, i) => (
               <Dot key={i.toString()} at={at([i + 0.5, value])} class="s1 small" />
             ))}
-            {parts.map(({ from, to, mean }) => (
+            {stretchesOf(ROW, breaks.value).map(({ from, to, mean }) => (
               <Line key={from} from={at([from, mean])} to={at([to, mean])} class="s6 thick" />
             ))}
             {isRevealed &&
@@ -302,14 +296,10 @@ function DescriptionFigure({ isRevealed }: { isRevealed: boolean }) {
 
 /** In the middle of the longest stretch. */
 function addBreak(): void {
-  const ends = [0, ...breaks.value, PIXELS];
-  let longest = 0;
-  for (let i = 1; i + 1 < ends.length; i += 1) {
-    const length = (at: number) => (ends[at + 1] as number) - (ends[at] as number);
-    longest = length(i) > length(longest) ? i : longest;
-  }
-  const at = Math.round(((ends[longest] as number) + (ends[longest + 1] as number)) / 2);
-  breaks.value = [...breaks.value, at].sort((a, b) => a - b);
+  const { from, to } = stretchesOf(ROW, breaks.value).reduce((longest, one) =>
+    one.to - one.from > longest.to - longest.from ? one : longest,
+  );
+  breaks.value = [...breaks.value, Math.round((from + to) / 2)].sort((a, b) => a - b);
 }
 
 /** The description with each number of breaks. */

@@ -1,4 +1,5 @@
 /** Description length of a row of grey values cut into stretches of constant grey (W96 3.3, one dimension). */
+import { meanOf } from "./windows";
 
 /** Bits for the place of a break among n pixels, and for a grey value. */
 const GREY_BITS = 8;
@@ -11,19 +12,25 @@ interface Description {
   total: number;
 }
 
+/** The stretches between breaks, and the mean of each. */
+export function stretchesOf(row: readonly number[], breaks: readonly number[]) {
+  const starts = [0, ...breaks];
+  return starts.map((from, i) => {
+    const to = starts[i + 1] ?? row.length;
+    return { from, to, mean: meanOf(row.slice(from, to)) };
+  });
+}
+
 /**
  * Bits of the whole description.
  * @param breaks places where a new stretch begins, rising, within the row
  * @param sigma standard deviation of the noise, grey values; pixels are stated to whole values
  */
 export function describe(row: readonly number[], breaks: readonly number[], sigma: number): Description {
-  const ends = [0, ...breaks, row.length];
-  let squares = 0;
-  for (let i = 0; i + 1 < ends.length; i += 1) {
-    const part = row.slice(ends[i], ends[i + 1]);
-    const mean = part.reduce((sum, one) => sum + one, 0) / part.length;
-    squares += part.reduce((sum, one) => sum + (one - mean) ** 2, 0);
-  }
+  const squares = stretchesOf(row, breaks).reduce(
+    (sum, { from, to, mean }) => row.slice(from, to).reduce((all, one) => all + (one - mean) ** 2, sum),
+    0,
+  );
   const model = breaks.length * Math.log2(row.length) + (breaks.length + 1) * GREY_BITS;
   const data = (row.length / 2) * Math.log2(2 * Math.PI * sigma ** 2) + squares / (2 * sigma ** 2 * Math.LN2);
   return { model, data, total: model + data };

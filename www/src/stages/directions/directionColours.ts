@@ -1,6 +1,9 @@
 /** The colours of image lines by the main direction that they follow. */
 
+import { SEGMENT_STRIDE, segmentAt } from "../../shared/flatArrays";
+import { lineThrough } from "../../shared/linear";
 import { category } from "../../shared/palette";
+import type { Vec2 } from "../../shared/records";
 import type { Figure } from "../figure";
 
 /** A right angle: from the first direction to the other. */
@@ -19,14 +22,8 @@ export function directionColours(
   }
   const p = info.projection;
   const tolerance = (3 * Math.PI) / 180;
-  return Array.from({ length: segments.length / 4 }, (_, i) => {
-    const [x0, y0, x1, y1] = [0, 1, 2, 3].map((k) => segments[4 * i + k] as number) as [
-      number,
-      number,
-      number,
-      number,
-    ];
-    const line = [y0 - y1, x1 - x0, x0 * y1 - x1 * y0] as const;
+  return Array.from({ length: segments.length / SEGMENT_STRIDE }, (_, i) => {
+    const line = lineThrough(...(segmentAt(segments, i) as [Vec2, Vec2]));
     const normal = (column: number) =>
       line.reduce((sum, l, row) => sum + l * (p[4 * row + column] as number), 0);
     const azimuth = Math.atan2(-normal(0), normal(1));

@@ -2,7 +2,7 @@
  * The uncertainty of 3D lines: a tube between the error ellipses of both ends, drawn larger than it is by a factor that
  * the legend states.
  */
-import { BufferAttribute, BufferGeometry, Mesh, MeshBasicMaterial, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, Matrix3, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import type { LineRecord } from "../../shared/records";
@@ -74,9 +74,10 @@ function across(direction: Vector3): [Vector3, Vector3] {
  * the covariance there, (M + sqrt(det M) I) / sqrt(tr M + 2 sqrt(det M)).
  */
 export function ellipse(covariance: Covariance, u: Vector3, v: Vector3): Vector3[] {
-  const a = quadratic(covariance, u, u);
-  const b = quadratic(covariance, u, v);
-  const c = quadratic(covariance, v, v);
+  const [xx, xy, xz, yy, yz, zz] = covariance;
+  const by = new Matrix3(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+  const ofV = v.clone().applyMatrix3(by);
+  const [a, b, c] = [u.dot(u.clone().applyMatrix3(by)), u.dot(ofV), v.dot(ofV)];
   const root = Math.sqrt(Math.max(0, a * c - b * b));
   const scale = 1 / Math.sqrt(Math.max(Number.MIN_VALUE, a + c + 2 * root));
   return Array.from({ length: CORNERS }, (_, i) => {
@@ -86,14 +87,6 @@ export function ellipse(covariance: Covariance, u: Vector3, v: Vector3): Vector3
       .addScaledVector(u, scale * ((a + root) * x + b * y))
       .addScaledVector(v, scale * (b * x + (c + root) * y));
   });
-}
-
-function quadratic([xx, xy, xz, yy, yz, zz]: Covariance, p: Vector3, q: Vector3): number {
-  return (
-    p.x * (xx * q.x + xy * q.y + xz * q.z) +
-    p.y * (xy * q.x + yy * q.y + yz * q.z) +
-    p.z * (xz * q.x + yz * q.y + zz * q.z)
-  );
 }
 
 function meshOf(tubes: readonly number[][], colour: string): Mesh<BufferGeometry, MeshBasicMaterial> {
@@ -110,12 +103,6 @@ function meshOf(tubes: readonly number[][], colour: string): Mesh<BufferGeometry
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
   geometry.setIndex(indices);
-  const material = new MeshBasicMaterial({
-    color: colour,
-    transparent: true,
-    opacity: OPACITY[0],
-    ...BOTH_SIDES,
-    depthWrite: false,
-  });
-  return new Mesh(geometry, material);
+  const style = { transparent: true, opacity: OPACITY[0], depthWrite: false, ...BOTH_SIDES };
+  return new Mesh(geometry, new MeshBasicMaterial({ color: colour, ...style }));
 }

@@ -46,17 +46,13 @@ export function endsOfLines(lines: Float64Array): Vector3[] {
     return [new Vector3(-EMPTY_M, 0, -EMPTY_M), new Vector3(EMPTY_M, 0, EMPTY_M)];
   }
   const axes = [0, 1, 2].map((axis) => Float64Array.from(lines.filter((_, i) => i % 3 === axis)).sort());
-  const at = (share: number) =>
-    axes.map((values) => values[Math.round(share * (values.length - 1))] as number) as [
-      number,
-      number,
-      number,
-    ];
-  const usual = new Box3().setFromPoints([yUp(at(OUTLIERS)), yUp(at(1 - OUTLIERS))]);
+  const at = (share: number) => axes.map((values) => values[Math.round(share * (values.length - 1))]);
+  const usual = [at(OUTLIERS), at(1 - OUTLIERS)].map((corner) => yUp(corner as unknown as Vec3));
+  const box = new Box3().setFromPoints(usual);
   const ends = Array.from({ length: lines.length / 3 }, (_, i) =>
     yUp([...lines.subarray(3 * i, 3 * i + 3)] as unknown as Vec3),
   );
-  return ends.filter((end) => usual.containsPoint(end));
+  return ends.filter((end) => box.containsPoint(end));
 }
 
 /** The cameras, too. */
