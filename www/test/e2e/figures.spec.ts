@@ -166,7 +166,7 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
   const borders = page.getByTestId("plan").locator(".border-real[data-count]");
   expect(Number(await borders.getAttribute("data-count"))).toBeGreaterThan(facets);
   await page.getByTestId("plan").locator(".plan-facet").first().press("Enter");
-  await expect(inspector().locator(".picked")).toHaveText("Facet 0");
+  await expect(inspector().locator(".picked")).toHaveText("Facet 1");
   await inspector()
     .locator("div", { hasText: /^3D lines/ })
     .getByRole("button")
@@ -247,7 +247,7 @@ test("what was rejected is picked, too: it says why, and shows in every view and
   await expect(page.locator(".plan .legend")).toContainText(`rejected ${await rejectedFacets.count()}`);
   const plain = await steadyLook(page, page.getByTestId("viewer"));
   await rejectedFacets.first().press("Enter");
-  await expect(title).toHaveText("Rejected facet 0");
+  await expect(title).toHaveText("Rejected facet 1");
   // In words and with the number that decided, whichever reason comes first; a reason without words has neither.
   await expect(inspector().locator("div", { hasText: /^Rejected/ })).toContainText(/[a-z] [a-z]+ .*\d/);
   expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);

@@ -1,6 +1,7 @@
 /** In the figures of W96, and in plan: main directions, regions, faces. */
 import { boundsOf, DEGREE, isInside } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import type { Figure } from "../../stages/figure";
 import { inUnit, kindOf, readQuantity } from "../judging/quantity";
 import { type FigureExercise, mistakeAmong, type Outcome } from "./judgeFigure";
@@ -175,7 +176,7 @@ export const wholeFace: FigureExercise = {
     );
     const [first] = right;
     return {
-      words: `Regions ${right.join(", ")} of ${shown.scene?.views[0]?.name ?? ""}, and such of the other views.`,
+      words: `Regions ${right.map(numberOf).join(", ")} of ${shown.scene?.views[0]?.name ?? ""}, and such of the other views.`,
       ...(first === undefined ? {} : { state: { select: `region:0.${first}`, view: 0 } }),
     };
   },
@@ -243,7 +244,7 @@ export const hipEnd: FigureExercise = {
     const facets = shown.results.facets ?? [];
     const right = facets.flatMap(({ outer }, i) => (isHipEnd(faceOfFacet(outer)) ? [i] : []));
     return {
-      words: `Facets ${right.join(", ")}.`,
+      words: `Facets ${right.map(numberOf).join(", ")}.`,
       ...(right[0] === undefined ? {} : { state: { select: `facet:${right[0]}` } }),
     };
   },

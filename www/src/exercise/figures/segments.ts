@@ -1,6 +1,6 @@
 /** In the photographs: which edge of a roof a segment shows, and which segment of another view shows the same. */
-
 import type { PairCandidate } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import type { Figure } from "../../stages/figure";
 import type { Asked, FigureExercise, Outcome } from "./judgeFigure";
 import { distanceFrom, edgeShown, type RoofEdge, type Stretch, segmentOf, shows } from "./truth";
@@ -64,7 +64,7 @@ export const pickEave: FigureExercise = {
     const all = edgesOfView(shown, 0).filter(({ edge, at }) => edge?.kind === "eave" && isLong(at));
     const [first] = all;
     return {
-      words: `Segments ${all.map(({ index }) => index).join(", ")} of ${shown.scene?.views[0]?.name ?? ""}, and those of the other views.`,
+      words: `Segments ${all.map(({ index }) => numberOf(index)).join(", ")} of ${shown.scene?.views[0]?.name ?? ""}, and those of the other views.`,
       ...(first === undefined ? {} : { state: { select: `segment:0.${first.index}`, view: 0 } }),
     };
   },
@@ -194,7 +194,7 @@ function candidateAnswer(shown: Figure, isRight: (truth: Truth, candidate: PairC
   );
   const name = (i: number) => {
     const { view = 0, segment = 0 } = candidates[i] ?? {};
-    return `${shown.scene?.views[view]?.name ?? view} · ${segment}`;
+    return `${shown.scene?.views[view]?.name ?? view} · ${numberOf(segment)}`;
   };
   const [first] = right;
   return {

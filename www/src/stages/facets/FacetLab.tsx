@@ -1,4 +1,5 @@
 /** B99 figures 21 to 23: the facets in plan, each in the colour of its plane, and the border lines that enclose them. */
+import { numberOf } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { buttonShape, closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
@@ -98,7 +99,7 @@ function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
           key={i}
           figure={figure}
           picks={{ kind: "facet", index: i }}
-          name={`Facet ${i}`}
+          name={`Facet ${numberOf(i)}`}
           className="plan-facet"
           fill={roofTintHex(facet)}
           d={closedPathOf(facet.outer.map(at))}
@@ -140,7 +141,7 @@ function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
         const [x, y] = at(middleOf(ring));
         return (
           <text key={i} class="plan-name" x={x} y={y + 4} text-anchor="middle">
-            {i}
+            {numberOf(i)}
           </text>
         );
       })}

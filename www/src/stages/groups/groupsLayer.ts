@@ -5,7 +5,7 @@
 import { Color } from "three";
 import { category, PALETTE } from "../../shared/palette";
 import { type Facet, type GroupingTrace, isMadeFrom, type Segment3 } from "../../shared/records";
-import { pickedIndex, type Selection } from "../../shared/selection";
+import { numberOf, pickedIndex, type Selection } from "../../shared/selection";
 import { facetMesh, triangulate } from "../../viewer/layers/facets";
 import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
 import { zUpGroup } from "../../viewer/scene/frame";
@@ -120,7 +120,7 @@ function namesOf(facets: readonly Facet[], became: readonly number[]) {
       largest.set(group, facet);
     }
   });
-  return [...largest].map(([group, { outer }]) => ({ text: String(group), at: middleOf(outer) }));
+  return [...largest].map(([group, { outer }]) => ({ text: String(numberOf(group)), at: middleOf(outer) }));
 }
 
 /** Whether a line lies over a facet and not below the roof. */

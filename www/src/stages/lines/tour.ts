@@ -2,6 +2,7 @@
 import { results } from "../../app/state/results";
 import { beforeGrowing, selection, showBeforeGrowing } from "../../app/state/viewState";
 import { LINE_STRIDE, STRETCH_STRIDE } from "../../shared/flatArrays";
+import { numberOf } from "../../shared/selection";
 import type { Results } from "../list";
 import type { StageStep } from "../tourStep";
 
@@ -14,7 +15,7 @@ export default [
     question: `Switch between Before growing and After, and pick a line that became at least ${GREW_M} m longer.`,
     answer: () => {
       const { line, before, after } = pickedLine();
-      return `Line ${line} showed ${before.toFixed(1)} m in one piece before, and is ${after.toFixed(1)} m long now.`;
+      return `Line ${numberOf(line ?? 0)} showed ${before.toFixed(1)} m in one piece before, and is ${after.toFixed(1)} m long now.`;
     },
     hint: () => {
       const { line, before, after } = pickedLine();
@@ -23,7 +24,7 @@ export default [
       }
       return beforeGrowing.value
         ? "This is before growing."
-        : `Line ${line} is ${after.toFixed(1)} m long, ${before.toFixed(1)} m before: look for one that gained more.`;
+        : `Line ${numberOf(line)} is ${after.toFixed(1)} m long, ${before.toFixed(1)} m before: look for one that gained more.`;
     },
     pointsTo: "growing",
     prepare: () => {

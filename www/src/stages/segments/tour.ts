@@ -1,6 +1,7 @@
 /** The tour: straight edges. */
 import { results } from "../../app/state/results";
 import { selection } from "../../app/state/viewState";
+import { numberOf } from "../../shared/selection";
 import type { Results } from "../list";
 import type { StageStep } from "../tourStep";
 
@@ -13,7 +14,7 @@ export default [
     question: `Pick a segment at the edge of a roof, longer than ${LONG_PX} pixels.`,
     answer: () => {
       const { length, facet } = pickedSegment();
-      return `${length.toFixed(0)} px, at a side of facet ${facet} of the finished model. One photograph alone cannot tell it from a kerb: that takes the other views.`;
+      return `${length.toFixed(0)} px, at a side of facet ${numberOf(facet ?? 0)} of the finished model. One photograph alone cannot tell it from a kerb: that takes the other views.`;
     },
     hint: () => {
       const { length, facet } = pickedSegment();
@@ -22,7 +23,7 @@ export default [
       }
       return facet === null
         ? `${length.toFixed(0)} px long, but no facet of the model has it as a side: kerbs, paths and shadows are straight, too.`
-        : `It is at a side of facet ${facet}, but ${length.toFixed(0)} px long: look for a longer one.`;
+        : `It is at a side of facet ${numberOf(facet)}, but ${length.toFixed(0)} px long: look for a longer one.`;
     },
     isFound: () => {
       const { length, facet } = pickedSegment();

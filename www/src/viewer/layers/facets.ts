@@ -13,7 +13,7 @@ import {
 import { edgesOf } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import type { Facet, Vec3 } from "../../shared/records";
-import { pickedIndex, type Selection } from "../../shared/selection";
+import { numberOf, pickedIndex, type Selection } from "../../shared/selection";
 import { opacityOf } from "../scene/certainty";
 import { middleOf } from "../scene/facetPlan";
 import { zUpGroup } from "../scene/frame";
@@ -34,7 +34,7 @@ export function buildFacets(facets: readonly Facet[], areNamed = true): Layer {
   );
   const opacities = facets.map(({ probability }) => opacityOf(probability));
   const all = facetMesh(triangles, facets.map(normalTint), opacities);
-  const names = facets.map(({ outer }, i) => ({ text: String(i), at: middleOf(outer) }));
+  const names = facets.map(({ outer }, i) => ({ text: String(numberOf(i)), at: middleOf(outer) }));
   object.add(all, outlines(facets));
   if (areNamed) {
     object.add(nameLabels(names));
