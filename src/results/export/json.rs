@@ -15,8 +15,8 @@ use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
 use crate::planes::half_planes::HalfPlane;
 
-/// `lines.json`: 3D lines in the order of their numbers, with the segment of each view that supports
-/// them. Lines that the model refutes are left out, with their numbers.
+/// `lines.json`: 3D lines by their numbers, with the segment of each view that supports them. Lines
+/// that the model refutes are left out, with their numbers.
 pub fn lines_json(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
     let point = |p: &Point3<f64>| (p + scene.origin).coords.map(|c| rounded(c, 4));
     let lines: Vec<Value> = Line3d::standing(lines)

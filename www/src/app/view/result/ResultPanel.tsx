@@ -71,7 +71,7 @@ function BuildingRow({ building }: { building: Building }) {
         <span class="muted numbers">{counted(faces.length, "roof facets")}</span>
         <span class={doubtful > 0 ? "doubtful numbers" : "muted numbers"} title="Of its least probable facet">
           {doubtful > 0 && `${doubtful} doubtful, `}
-          {Math.round(100 * probability)} %
+          {Math.round(100 * probability)}&nbsp;%
         </span>
       </button>
       {isOpen && (
