@@ -34,7 +34,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             .map(|facet| format!("{:.0}", facet.plane.normal.z.acos().to_degrees()))
             .collect();
         println!(
-            "building {building}: slopes of {} degrees",
+            "building {}: slopes of {} degrees",
+            building + 1,
             slopes.join(", ")
         );
     }

@@ -15,6 +15,11 @@ macro_rules! id {
                 self.0 as usize
             }
 
+            /// The number by which people know it, in files too: they count from 1.
+            pub fn number(self) -> u32 {
+                self.0 + 1
+            }
+
             /// The id of the element at `index`.
             pub fn from_index(index: usize) -> Self {
                 Self(u32::try_from(index).expect("fewer than 2^32 elements"))
@@ -36,6 +41,20 @@ id! {
     FacetId,
     /// A building: index into [`crate::roofs::model::RoofModel::buildings`].
     BuildingId,
+}
+
+impl BuildingId {
+    /// Its name in all files.
+    pub fn name(self) -> String {
+        format!("building-{}", self.number())
+    }
+}
+
+impl FacetId {
+    /// Its name in all files.
+    pub fn name(self) -> String {
+        format!("facet-{}", self.number())
+    }
 }
 
 /// Which source proposed a plane, and the index in what its stage found; half-planes and lines are

@@ -539,10 +539,10 @@ mod tests {
         let numbers = |bytes: &[u8]| {
             let text = String::from_utf8_lossy(bytes);
             let named = |i: &usize| text.contains(&format!("\"building\":{i}"));
-            (0..3).filter(named).collect::<Vec<usize>>()
+            (1..=3).filter(named).collect::<Vec<usize>>()
         };
-        assert_eq!(numbers(&files[0].1), [0]);
-        assert_eq!(numbers(&files[1].1), [1, 2]);
+        assert_eq!(numbers(&files[0].1), [1]);
+        assert_eq!(numbers(&files[1].1), [2, 3]);
         let tileset: serde_json::Value = serde_json::from_slice(&files[2].1).unwrap();
         let children = tileset["root"]["children"].as_array().unwrap();
         let uris: Vec<&str> = (children.iter())

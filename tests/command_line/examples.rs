@@ -61,6 +61,6 @@ fn a_folder_is_reconstructed() {
     }
     let out = tempfile::tempdir().unwrap();
     let printed = run("reconstruct_folder", &[scene.path(), out.path()]);
-    assert!(printed.starts_with("building 0: slopes of "), "{printed}");
+    assert!(printed.starts_with("building 1: slopes of "), "{printed}");
     assert!(out.path().join("model.city.json").exists());
 }

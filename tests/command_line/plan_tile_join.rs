@@ -309,7 +309,7 @@ fn every_line_of_the_sequence_is_a_valid_feature() {
         assert_eq!(feature["appearance"], whole["appearance"]);
         ids.push(id);
     }
-    assert_eq!(ids, ["building-0"]);
+    assert_eq!(ids, ["building-1"]);
 }
 
 #[test]

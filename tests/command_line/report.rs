@@ -82,7 +82,7 @@ fn compared_with_itself_and_corrected(scene: &Scene, city: &Path) {
     }
     let model: serde_json::Value = serde_json::from_slice(&fs::read(city).unwrap()).unwrap();
     let [x, y, z] = [0, 1, 2].map(|axis| {
-        let object = &model["CityObjects"]["building-0"]["geometry"][0];
+        let object = &model["CityObjects"]["building-1"]["geometry"][0];
         let roof = (0..).find(|i| object["semantics"]["surfaces"][i]["type"] == "RoofSurface");
         let ring = object["boundaries"][0][roof.unwrap()][0]
             .as_array()
@@ -115,7 +115,7 @@ fn compared_with_itself_and_corrected(scene: &Scene, city: &Path) {
         buildings.len()
     );
     assert!(text.starts_with(&both), "{text}");
-    let row = text.lines().find(|line| line.starts_with("building-0"));
+    let row = text.lines().find(|line| line.starts_with("building-1"));
     let above: f64 = (row.and_then(|row| row.split_whitespace().nth_back(1)))
         .and_then(|above| above.parse().ok())
         .unwrap_or_else(|| panic!("{text}"));

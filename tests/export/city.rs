@@ -27,7 +27,7 @@ fn cityjson_is_valid_and_holds_the_model_in_the_world_frame() {
             (found - volume).abs() < 0.05,
             "{name}: {found} for {volume}"
         );
-        let roof = &json["CityObjects"]["building-0"]["geometry"][0]["semantics"];
+        let roof = &json["CityObjects"]["building-1"]["geometry"][0]["semantics"];
         let types: Vec<_> = roof["surfaces"]
             .as_array()
             .unwrap()
@@ -48,7 +48,7 @@ fn a_corner_is_as_likely_as_all_facets_that_meet_there() {
     }
     let json: Value =
         serde_json::from_slice(&files_of(&scene(), &model)["model.city.json"]).unwrap();
-    let surfaces = &json["CityObjects"]["building-0"]["geometry"][0]["semantics"]["surfaces"];
+    let surfaces = &json["CityObjects"]["building-1"]["geometry"][0]["semantics"]["surfaces"];
     let of_facet = |facet: u64| -> Vec<f64> {
         let mut surfaces = surfaces.as_array().unwrap().iter();
         let surface = surfaces.find(|s| s["facet"] == facet).unwrap();
@@ -56,7 +56,7 @@ fn a_corner_is_as_likely_as_all_facets_that_meet_there() {
         corners.iter().map(|p| p.as_f64().unwrap()).collect()
     };
     // Two ends of the ridge, which both slopes share, and two of the eave.
-    for (facet, own) in [(0, 0.9), (1, 0.6)] {
+    for (facet, own) in [(1, 0.9), (2, 0.6)] {
         let mut corners = of_facet(facet);
         corners.sort_by(f64::total_cmp);
         assert_eq!(corners, [0.54, 0.54, own, own]);

@@ -155,11 +155,11 @@ fn what_was_said_of_another_shape_goes_and_the_rest_of_a_model_stays() {
     let after: Value = serde_json::from_str(&corrected(text, &[steeper])).unwrap();
     let before: Value = serde_json::from_str(text).unwrap();
     assert_eq!(after["metadata"], before["metadata"]);
-    let building = &after["CityObjects"]["building-0"];
+    let building = &after["CityObjects"]["building-1"];
     assert_eq!(building["attributes"]["roofArea"], Value::Null);
     assert_eq!(
         building["attributes"]["groundHeight"],
-        before["CityObjects"]["building-0"]["attributes"]["groundHeight"]
+        before["CityObjects"]["building-1"]["attributes"]["groundHeight"]
     );
     let surfaces = building["geometry"][0]["semantics"]["surfaces"].as_array();
     let roofs: Vec<&Value> = (surfaces.unwrap().iter())
@@ -190,7 +190,7 @@ fn of_what_stands_on_a_face_the_rest_stays() {
     let after: Value = serde_json::from_str(&corrected(text, &[delete])).unwrap();
     let before: Value = serde_json::from_str(text).unwrap();
     let face = |json: &Value| -> Value {
-        let surfaces = &json["CityObjects"]["building-0"]["geometry"][0]["semantics"]["surfaces"];
+        let surfaces = &json["CityObjects"]["building-1"]["geometry"][0]["semantics"]["surfaces"];
         let all = surfaces.as_array().unwrap();
         all.iter()
             .find(|s| s["obstructions"].is_array())

@@ -49,7 +49,7 @@ fn glb_reads_back_with_the_area_of_the_model() {
             for face in &building.solid.faces {
                 let wanted = building.solid.vector_area(&face.rings);
                 if let Surface::Roof(id) = face.surface {
-                    let found = area[&format!("roof {}", id.0)];
+                    let found = area[&format!("roof {}", id.number())];
                     assert!(
                         (found - wanted).norm() < 1e-4,
                         "{name}: {found} for {wanted}"

@@ -248,7 +248,7 @@ fn ifcopenshell_reads_what_the_other_files_have() {
 /// The faces are those of CityJSON.
 fn assert_faces(read: &Value, city: &[u8]) {
     let city: Value = serde_json::from_slice(city).unwrap();
-    let surfaces = &city["CityObjects"]["building-0"]["geometry"][0]["semantics"];
+    let surfaces = &city["CityObjects"]["building-1"]["geometry"][0]["semantics"];
     for slab in list(read, "slabs") {
         let mut surfaces = list(surfaces, "surfaces").iter();
         let is_it = |surface: &&Value| slab["name"] == format!("facet-{}", surface["facet"]);
@@ -269,7 +269,7 @@ fn assert_faces(read: &Value, city: &[u8]) {
             same("/Ridgeline/AzimuthSigma", "/azimuthSigmaDeg", 1e-9);
         }
         assert_eq!(slab["description"], "photographs: a.jpg; b.jpg");
-        assert_eq!(slab["parent"], "roof-0");
+        assert_eq!(slab["parent"], "roof-1");
     }
 }
 

@@ -40,8 +40,8 @@ fn a_chimney_is_stated_of_its_face_and_is_read_again() {
         assert!(!summary.has_errors(), "{criterion}: {summary}");
     }
     let json: Value = serde_json::from_str(text).unwrap();
-    let roof = &json["CityObjects"]["building-0"]["geometry"][0]["semantics"]["surfaces"];
-    let roof = roof.as_array().unwrap().iter().find(|s| s["facet"] == 0);
+    let roof = &json["CityObjects"]["building-1"]["geometry"][0]["semantics"]["surfaces"];
+    let roof = roof.as_array().unwrap().iter().find(|s| s["facet"] == 1);
     let found = &roof.unwrap()["obstructions"][0];
     near(&found["height"], 2.0);
     near(&found["outline"][0][0], ORIGIN.x + 4.25);

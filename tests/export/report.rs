@@ -160,11 +160,50 @@ fn what_the_frame_is_worth_is_in_every_standard_deviation_and_only_where_it_is_s
 }
 
 #[test]
+fn numbers_count_from_one_and_are_the_same_in_all_files() {
+    let (_, model, _) = known_models().remove(1);
+    let files = files_of(&scene(), &model);
+    let text = |name: &str| String::from_utf8_lossy(&files[name]).into_owned();
+    let wanted: Vec<u64> = (1..=model.facets.len() as u64).collect();
+    let named = |all: &Value, name: &str| -> Vec<u64> {
+        let numbers = all.as_array().unwrap().iter();
+        numbers.filter_map(|one| one[name].as_u64()).collect()
+    };
+    let json = |name: &str| serde_json::from_slice::<Value>(&files[name]).unwrap();
+    let city = &json("model.city.json")["CityObjects"]["building-1"]["geometry"][0];
+    assert_eq!(named(&city["semantics"]["surfaces"], "facet"), wanted);
+    let building = &json("roofs.json")["buildings"][0];
+    assert_eq!(building["name"], "building-1");
+    assert_eq!(named(&building["roofSegmentStats"], "facet"), wanted);
+    let maps = json("facets.geojson")["features"].clone();
+    let maps: Value = (maps.as_array().unwrap().iter())
+        .map(|feature| feature["properties"].clone())
+        .collect();
+    assert_eq!(named(&maps, "facet"), wanted);
+    assert_eq!(named(&maps, "building"), vec![1; wanted.len()]);
+    let of_table: Vec<u64> = (rows(&files["facets.csv"]).iter())
+        .map(|row| row["facet"].parse().unwrap())
+        .collect();
+    assert_eq!(of_table, wanted);
+    for (file, marks) in [
+        ("model.obj", ["o building-1\n", "g facet-1\n"]),
+        ("model.ifc", ["'building-1'", "'facet-1'"]),
+        ("model.glb", ["\"building-1\"", "\"facet-1\""]),
+    ] {
+        let text = text(file);
+        for mark in marks {
+            assert!(text.contains(mark), "{file}: {mark}");
+            assert!(!text.contains(&mark.replace('1', "0")), "{file}: {mark}");
+        }
+    }
+}
+
+#[test]
 fn tables_hold_planted_areas_lengths_and_places() {
     let (_, model, volume) = known_models().remove(1);
     let files = files_of(&scene(), &model);
     let building = &rows(&files["buildings.csv"])[0];
-    assert_eq!(building["building"], "building-0");
+    assert_eq!(building["building"], "building-1");
     let near = |name: &str, wanted: f64| {
         let found = number(building, name);
         assert!(
@@ -278,7 +317,7 @@ fn the_page_is_well_formed_needs_nothing_else_and_names_what_there_is() {
         let parsed = roxmltree::Document::parse(body).unwrap();
         let count = |tag: &str| parsed.descendants().filter(|n| n.has_tag_name(tag)).count();
         assert_eq!(count("section"), model.buildings.len() + 1);
-        for facet in 0..model.facets.len() {
+        for facet in 1..=model.facets.len() {
             let number = facet.to_string();
             let is_number = |n: &roxmltree::Node| {
                 n.attribute("class") == Some("number") && n.text() == Some(&number)
@@ -330,23 +369,23 @@ fn a_file_that_is_no_model_is_refused_with_the_reason() {
         (&|f| f["vertices"][2] = 7.into(), "vertex 2"),
         (&|f| f["CityObjects"] = Value::Null, "\"CityObjects\""),
         (
-            &|f| f["CityObjects"]["building-0"]["geometry"] = Value::Null,
+            &|f| f["CityObjects"]["building-1"]["geometry"] = Value::Null,
             "RoofSurface",
         ),
         (
-            &|f| f["CityObjects"]["building-0"]["geometry"][0]["boundaries"] = 3.into(),
-            "building-0: its Solid has no shell",
+            &|f| f["CityObjects"]["building-1"]["geometry"][0]["boundaries"] = 3.into(),
+            "building-1: its Solid has no shell",
         ),
         (
             &|f| {
-                f["CityObjects"]["building-0"]["geometry"][0]["boundaries"][0][1][0][0] =
+                f["CityObjects"]["building-1"]["geometry"][0]["boundaries"][0][1][0][0] =
                     99999.into()
             },
-            "building-0: face 1",
+            "building-1: face 1",
         ),
         (
             &|f| {
-                f["CityObjects"]["building-0"]["geometry"][0]["boundaries"][0][0] =
+                f["CityObjects"]["building-1"]["geometry"][0]["boundaries"][0][0] =
                     serde_json::json!([])
             },
             "face 0: no ring",
@@ -358,8 +397,8 @@ fn a_file_that_is_no_model_is_refused_with_the_reason() {
     assert!(ReportedModel::read(b"{").unwrap_err().contains("no JSON"));
     // What others leave out is not needed.
     let bare = damaged(&|f| {
-        f["CityObjects"]["building-0"]["attributes"] = Value::Null;
-        let surfaces = &mut f["CityObjects"]["building-0"]["geometry"][0]["semantics"]["surfaces"];
+        f["CityObjects"]["building-1"]["attributes"] = Value::Null;
+        let surfaces = &mut f["CityObjects"]["building-1"]["geometry"][0]["semantics"]["surfaces"];
         for surface in surfaces.as_array_mut().unwrap() {
             let kind = surface["type"].clone();
             *surface = serde_json::json!({ "type": kind });

@@ -159,13 +159,13 @@ fn no_file_shows_what_the_model_refutes_and_ids_stay() {
             .map(|item| item["id"].as_i64().unwrap())
             .collect()
     };
-    assert_eq!(ids("lines.json", "lines"), [1]);
-    assert_eq!(ids("halfplanes.json", "half_planes"), [1]);
-    assert_eq!(parse("halfplanes.json")["half_planes"][0]["line"], 1);
+    assert_eq!(ids("lines.json", "lines"), [2]);
+    assert_eq!(ids("halfplanes.json", "half_planes"), [2]);
+    assert_eq!(parse("halfplanes.json")["half_planes"][0]["line"], 2);
     let text = |name: &str| String::from_utf8(files[name].clone()).unwrap();
     assert_eq!(
         text("lines.csv").lines().nth(1).unwrap().split(',').next(),
-        Some("1")
+        Some("2")
     );
     // The meshes are those of the standing line alone.
     assert_eq!(files["model.ply"], all["model.ply"]);

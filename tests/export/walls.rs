@@ -54,7 +54,7 @@ fn solids_with_walls_inside_the_eaves_are_valid() {
             assert!(!summary.has_errors(), "{name}, {criterion}: {summary}");
         }
         let city: Value = serde_json::from_str(text).unwrap();
-        let geometry = city["CityObjects"]["building-0"]["geometry"].as_array();
+        let geometry = city["CityObjects"]["building-1"]["geometry"].as_array();
         let lods: Vec<_> = geometry.unwrap().iter().map(|g| &g["lod"]).collect();
         assert_eq!(lods, ["2.2", "2.3"], "{name}");
         for (solid, errors) in solid_errors(&city) {
@@ -81,7 +81,7 @@ fn mitres_a_hair_beside_a_hip_do_not_bend_faces() {
         let depth = |side: &Side| 0.6 + hair * (1.0 + side.along().x);
         let files = files_of_walled(&scene(), &model, &[walls_at(&model, depth)]);
         let city: Value = serde_json::from_slice(&files["model.city.json"]).unwrap();
-        let errors = &solid_errors(&city)["building-0"];
+        let errors = &solid_errors(&city)["building-1"];
         assert!(errors.is_empty(), "{hair}: {errors:?}");
     }
 }

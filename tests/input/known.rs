@@ -137,14 +137,14 @@ fn a_building_under_which_a_terrain_is_wrong_stands_on_the_ground_of_the_images_
     run.run_all();
     assert_eq!(comparison(&run).verdict, KnownVerdict::Used);
     house_is(&run, |_, _| truth.ground_z);
-    let said = "the images contradict dtm.asc below building-0 (";
+    let said = "the images contradict dtm.asc below building-1 (";
     let mut warnings = run.summaries().iter().flat_map(|stage| &stage.warnings);
     assert!(warnings.any(|words| words.starts_with(said)));
     let files = run.files(&[]);
     let report = files.iter().find(|(name, _)| name == "report.json");
     let report: serde_json::Value = serde_json::from_slice(&report.unwrap().1).unwrap();
     let below = &report["known"]["terrain"]["contradicted_below"][0];
-    assert_eq!(below["building"], "building-0");
+    assert_eq!(below["building"], "building-1");
     let up_m = below["up_m"].as_f64().unwrap();
     assert!((up_m - 3.0).abs() < 1.0, "{up_m}");
 }

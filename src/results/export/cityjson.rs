@@ -15,7 +15,7 @@ use super::format::{ATLAS_FILE, rounded, to_bytes};
 use super::measured::Measured;
 use super::walls::{add_attributes, walled_solid};
 use crate::base::geometry::plan_sides;
-use crate::base::ids::FacetId;
+use crate::base::ids::{BuildingId, FacetId};
 use crate::orienting::orientation::FrameSigma;
 use crate::orienting::scene::Scene;
 use crate::results::roof_report::{Estimate, Lengths, RoofEdgeKind};
@@ -97,7 +97,7 @@ pub(super) fn city_json(
         if let Some(walls) = walls.get(i) {
             add_walls(&mut object, walls, &mut shared, first);
         }
-        objects.insert(format!("building-{i}"), object);
+        objects.insert(BuildingId::from_index(i).name(), object);
     }
     let mut file = head(scene, &shared.vertices);
     file["CityObjects"] = Value::Object(objects);
@@ -119,7 +119,7 @@ pub(super) fn city_json_seq(
     let mut vertices = Vec::new();
     let mut features = Vec::new();
     for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
-        let id = format!("building-{i}");
+        let id = BuildingId::from_index(i).name();
         let mut own = Shared::default();
         let of = (model, measured);
         let mut object = building_object(scene, of, (i, building), textures, &mut own);
@@ -329,7 +329,7 @@ fn add_measures(surface: &mut Value, measured: &Measured, id: FacetId) {
     }
 }
 
-/// What a face is; roof surfaces carry the facet's id, slope and evidence.
+/// What a face is; roof surfaces carry the facet's number, slope and evidence.
 fn semantic_surface(
     scene: &Scene,
     (model, measured): (&RoofModel, &Measured),
@@ -344,7 +344,7 @@ fn semantic_surface(
             let slope = crate::base::math::acos(facet.plane.normal.z.clamp(-1.0, 1.0));
             let mut surface = json!({
                 "type": "RoofSurface",
-                "facet": id,
+                "facet": id.number(),
                 "slopeDeg": rounded(slope.to_degrees(), 3),
                 "similarity": rounded(facet.similarity, 4),
                 "realLineRatio": rounded(facet.real_ratio, 4),

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::format::{rounded, to_bytes, world};
 use super::measured::Measured;
+use crate::base::ids::{BuildingId, FacetId};
 use crate::orienting::scene::Scene;
 use crate::results::roof_report::{Estimate, RoofEdgeKind};
 use crate::roofs::model::{Building, RoofModel, Solid, Surface};
@@ -53,7 +54,7 @@ fn building_footprints(
             "type": "Feature",
             "geometry": { "type": "Polygon", "coordinates": rings },
             "properties": {
-                "building": id,
+                "building": BuildingId::from_index(id).number(),
                 "facets": building.facets.len(),
                 "ground_m": height(building.ground_z),
                 "lowest_roof_m": height(heights.iter().copied().fold(f64::INFINITY, f64::min)),
@@ -98,8 +99,8 @@ pub(super) fn facets(scene: &Scene, model: &RoofModel, measured: &Measured) -> V
             corners.map(|p| position(scene, p)).collect()
         };
         let mut properties = Properties::new(&[
-            ("building", json!(building)),
-            ("facet", json!(facet.facet)),
+            ("building", json!(building.number())),
+            ("facet", json!(facet.facet.number())),
             ("probability", json!(rounded(facet.probability, 4))),
             (
                 "photographs",
@@ -137,8 +138,8 @@ pub(super) fn obstructions(scene: &Scene, model: &RoofModel) -> Vec<u8> {
                 sigma: obstruction.height_sigma_m,
             };
             let mut properties = Properties::new(&[
-                ("building", json!(facet.building)),
-                ("facet", json!(id)),
+                ("building", json!(facet.building.number())),
+                ("facet", json!(FacetId::from_index(id).number())),
                 ("probability", json!(rounded(obstruction.probability, 4))),
             ]);
             properties.add("height_m", Some(height));
@@ -166,10 +167,10 @@ pub(super) fn edges(scene: &Scene, measured: &Measured) -> Vec<u8> {
         let (length, edge) = (edge.length_m, &edge.edge);
         let ends = [edge.segment.p0, edge.segment.p1];
         let mut properties = Properties::new(&[
-            ("building", json!(building)),
+            ("building", json!(building.number())),
             ("kind", json!(edge.kind.name())),
-            ("facet", json!(edge.facet)),
-            ("other_facet", json!(edge.other)),
+            ("facet", json!(edge.facet.number())),
+            ("other_facet", json!(edge.other.map(FacetId::number))),
         ]);
         properties.add("length_m", Some(length));
         for (name, p) in ["z0_m", "z1_m"].into_iter().zip(&ends) {

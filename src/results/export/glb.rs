@@ -6,9 +6,9 @@
 //!
 //! ```text
 //! scene
-//!  └ building 0           extras { building }
-//!     ├ facet 0           extras { building, facet, surface: "roof" }
-//!     ├ facet 1           ...
+//!  └ building-1           extras { building }
+//!     ├ facet-1           extras { building, facet, surface: "roof" }
+//!     ├ facet-2           ...
 //!     ├ walls             extras { building, surface: "wall" }
 //!     └ ground            extras { building, surface: "ground" }
 //! ```
@@ -26,6 +26,7 @@ use nalgebra::{Point3, Vector3};
 use serde_json::{Value, json};
 
 use crate::base::geometry::vector_area;
+use crate::base::ids::BuildingId;
 use crate::orienting::scene::Scene;
 use crate::results::texture::{FaceTexture, TexturedModel};
 use crate::roofs::model::{Building, RoofModel, SolidFace, Surface, triangulate};
@@ -54,7 +55,7 @@ pub fn glb_of(
         file.add_material(atlas);
     }
     for (i, textures) in buildings.zip(faces) {
-        nodes.push(file.add_building(i, model, textures));
+        nodes.push(file.add_building(BuildingId::from_index(i), model, textures));
     }
     file.finish(nodes, scene)
 }
@@ -188,11 +189,12 @@ impl GlbFile {
     /// and one for what stands on the roof.
     fn add_building(
         &mut self,
-        id: usize,
+        id: BuildingId,
         model: &RoofModel,
         textures: &[FaceTexture],
     ) -> Index<gltf::Node> {
-        let building = &model.buildings[id];
+        let building = &model.buildings[id.index()];
+        let number = id.number();
         let faces = || building.solid.faces.iter().zip(textures);
         let mut children = Vec::new();
         let photographs = Index::new(0);
@@ -200,13 +202,9 @@ impl GlbFile {
             if let Surface::Roof(facet) = face.surface {
                 let mut triangles = MeshBuffers::default();
                 triangles.add(building, face, texture);
-                let extras = json!({ "building": id, "facet": facet, "surface": "roof" });
-                children.extend(self.add_mesh(
-                    &format!("facet {}", facet.0),
-                    &extras,
-                    triangles,
-                    photographs,
-                ));
+                let extras =
+                    json!({ "building": number, "facet": facet.number(), "surface": "roof" });
+                children.extend(self.add_mesh(&facet.name(), &extras, triangles, photographs));
             }
         }
         for (surface, name) in [(Surface::Wall, "wall"), (Surface::Ground, "ground")] {
@@ -214,7 +212,7 @@ impl GlbFile {
             for (face, texture) in faces().filter(|(face, _)| face.surface == surface) {
                 triangles.add(building, face, texture);
             }
-            let extras = json!({ "building": id, "surface": name });
+            let extras = json!({ "building": number, "surface": name });
             children.extend(self.add_mesh(name, &extras, triangles, photographs));
         }
         let mut triangles = MeshBuffers::default();
@@ -224,14 +222,14 @@ impl GlbFile {
         }
         if !triangles.indices.is_empty() {
             let material = self.plain_material();
-            let extras = json!({ "building": id, "surface": "obstruction" });
+            let extras = json!({ "building": number, "surface": "obstruction" });
             children.extend(self.add_mesh("obstructions", &extras, triangles, material));
         }
         self.root.push(gltf::Node {
-            name: Some(format!("building {id}")),
+            name: Some(id.name()),
             // The format forbids an empty list.
             children: (!children.is_empty()).then_some(children),
-            extras: raw(&json!({ "building": id })),
+            extras: raw(&json!({ "building": number })),
             ..Default::default()
         })
     }

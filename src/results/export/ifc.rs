@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 
 use super::format::{push_line, rounded};
 use super::measured::Measured;
-use crate::base::ids::FacetId;
+use crate::base::ids::{BuildingId, FacetId};
 use crate::orienting::scene::Scene;
 use crate::results::roof_report::{BuildingReport, Estimate};
 use crate::roofs::model::{BuildingWalls, RoofModel, Solid, SolidFace, Surface};
@@ -117,10 +117,11 @@ impl IfcFile {
     ) -> u32 {
         self.identified = [index as u32 + 1, 0];
         let place = self.placed_in(place);
-        let of = format_args!("'building-{index}',$,$,#{place},$,$,.ELEMENT.,$,{ground_m:?},$");
+        let name = BuildingId::from_index(index).name();
+        let of = format_args!("'{name}',$,$,#{place},$,$,.ELEMENT.,$,{ground_m:?},$");
         let building = self.root("BUILDING", of);
         let place = self.placed_in(place);
-        let of = format_args!("'roof-{index}',$,$,#{place},$,$,.NOTDEFINED.");
+        let of = format_args!("'roof-{}',$,$,#{place},$,$,.NOTDEFINED.", index + 1);
         let roof = self.root("ROOF", of);
         let places = [place, self.placed_in(place)];
         let points = solid.vertices.iter().map(|p| coordinates(&p.coords));
@@ -195,16 +196,19 @@ impl IfcFile {
         slab
     }
 
-    /// A surface with its quantities: its class, kind, name and what its area is called, number and
+    /// A surface with its quantities: its class, kind, name and what its area is called, index and
     /// description, placement and shape, area without and with its holes taken off.
     fn element(
         &mut self,
         [class, kind, name, side]: [&str; 4],
-        (number, text): (usize, &str),
+        (index, text): (usize, &str),
         [place, shape]: [u32; 2],
         [gross, net]: [Estimate; 2],
     ) -> u32 {
-        let of = format_args!("'{name}-{number}',{text},$,#{place},#{shape},$,.{kind}.");
+        let of = format_args!(
+            "'{name}-{}',{text},$,#{place},#{shape},$,.{kind}.",
+            index + 1
+        );
         let element = self.root(&class.to_ascii_uppercase(), of);
         let names = ["Gross", "Net"].map(|of| format!("{of}{side}Area"));
         let areas = [("AREA", &*names[0], gross), ("AREA", &*names[1], net)];

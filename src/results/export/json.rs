@@ -2,21 +2,21 @@
 //!
 //! World coordinates are those of the input (scene origin added), metres rounded to 0.1 mm; image
 //! positions are pixels rounded to 0.001, centre of the top-left pixel at (0.5, 0.5). Angles are
-//! degrees.
+//! degrees. Lines and half-planes are named by their numbers, which count from 1.
 
 use nalgebra::Point3;
 use serde_json::{Value, json};
 
 use super::format::{rounded, to_bytes};
 use crate::base::geometry::Segment2;
-use crate::base::ids::ViewId;
+use crate::base::ids::{HalfPlaneId, ViewId};
 use crate::lines::lines2d::ImageSegment;
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
 use crate::planes::half_planes::HalfPlane;
 
-/// `lines.json`: 3D lines in the order of their ids, with the segment of each view that supports
-/// them. Ids of lines that the model refutes are left out.
+/// `lines.json`: 3D lines by their numbers, with the segment of each view that supports them. Lines
+/// that the model refutes are left out, with their numbers.
 pub fn lines_json(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
     let point = |p: &Point3<f64>| (p + scene.origin).coords.map(|c| rounded(c, 4));
     let lines: Vec<Value> = Line3d::standing(lines)
@@ -34,7 +34,7 @@ pub fn lines_json(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
                 })
                 .collect();
             json!({
-                "id": id.index(),
+                "id": id.number(),
                 "p0": point(&line.segment.p0).as_slice(),
                 "p1": point(&line.segment.p1).as_slice(),
                 "sigma_m": rounded(line.sigma_m, 4),
@@ -77,8 +77,8 @@ pub fn half_planes_json(scene: &Scene, lines: &[Line3d], half_planes: &[HalfPlan
             let views: Vec<_> = h.views.iter().map(|&view| name(scene, view)).collect();
             let n = h.plane.normal;
             json!({
-                "id": id,
-                "line": h.line.index(),
+                "id": HalfPlaneId::from_index(id).number(),
+                "line": h.line.number(),
                 "side": h.side,
                 "theta_deg": rounded(h.theta.to_degrees(), 4),
                 "sigma_theta_deg": rounded(h.sigma_theta.to_degrees(), 4),

@@ -6,7 +6,7 @@
 use nalgebra::Point3;
 
 use super::format::{ATLAS_FILE, MATERIAL_FILE, push_line, world};
-use crate::base::ids::LineId;
+use crate::base::ids::{BuildingId, LineId};
 use crate::lines::lines3d::Line3d;
 use crate::orienting::scene::Scene;
 use crate::results::texture::TexturedModel;
@@ -18,9 +18,12 @@ pub fn obj(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> Vec<u8
     push_line(&mut text, format_args!("mtllib {MATERIAL_FILE}"));
     // OBJ counts from one, over the whole file.
     let (mut first_vertex, mut first_uv) = (1, 1);
-    for (b, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
+    for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
         let solid = &building.solid;
-        push_line(&mut text, format_args!("o building_{b}"));
+        push_line(
+            &mut text,
+            format_args!("o {}", BuildingId::from_index(i).name()),
+        );
         for p in &solid.vertices {
             let [x, y, z] = world(scene, p);
             push_line(&mut text, format_args!("v {x} {y} {z}"));
@@ -106,7 +109,7 @@ fn comment(start: &str, scene: &Scene) -> String {
 
 fn group(surface: Surface) -> String {
     match surface {
-        Surface::Roof(facet) => format!("roof_{}", facet.index()),
+        Surface::Roof(facet) => facet.name(),
         Surface::Wall => "wall".to_owned(),
         Surface::Ceiling => "ceiling".to_owned(),
         Surface::Ground => "ground".to_owned(),

@@ -89,7 +89,7 @@ pub fn lines_csv(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
     let columns = "id,x0_m,y0_m,z0_m,x1_m,y1_m,z1_m,length_m,sigma_m,probability,views,origin\n";
     let mut text = String::from(columns);
     for (id, l) in Line3d::standing(lines) {
-        let id = id.index();
+        let id = id.number();
         let ([x0, y0, z0], [x1, y1, z1]) =
             (world(scene, &l.segment.p0), world(scene, &l.segment.p1));
         let [length, sigma, probability] =

@@ -39,7 +39,7 @@ pub(super) fn add_attributes(attributes: &mut Value, walls: &BuildingWalls) {
 
 fn surface(walls: &BuildingWalls, solid: &Solid, face: &SolidFace) -> Value {
     match face.surface {
-        Surface::Roof(id) => json!({ "type": "RoofSurface", "facet": id }),
+        Surface::Roof(id) => json!({ "type": "RoofSurface", "facet": id.number() }),
         Surface::Ground => json!({ "type": "GroundSurface" }),
         Surface::Ceiling => json!({ "type": "OuterCeilingSurface" }),
         Surface::Wall => {

@@ -4,6 +4,7 @@ use nalgebra::{Point2, Point3, Vector2};
 use serde::Serialize;
 
 use crate::base::error::listed;
+use crate::base::ids::BuildingId;
 use crate::orienting::known::Terrain;
 use crate::planes::terrain::Ground;
 use crate::roofs::model::{Building, RoofModel};
@@ -30,7 +31,7 @@ pub fn other_ground(model: &RoofModel, ground: &Ground, terrain: &Terrain) -> Ve
             corners.chain([middle(&facet.outer)])
         });
         let up_m = ground.above_terrain(terrain, places)?;
-        let building = format!("building-{i}");
+        let building = BuildingId::from_index(i).name();
         Some(OtherGround { building, up_m })
     };
     let buildings = model.buildings.iter().enumerate();

@@ -6,7 +6,7 @@ import { effect, signal } from "@preact/signals";
 import { render } from "preact";
 import { citationOf } from "../app/results/takeAlong/citation";
 import { pngOf, svgOf } from "../app/results/takeAlong/pictures";
-import { csvOf, type Row } from "../app/results/takeAlong/rows";
+import { csvOf, numbered, type Row } from "../app/results/takeAlong/rows";
 import type { CoreSource } from "../core/workerEngine";
 import type { Args, InputFile, Result } from "../shared/calls";
 import type { Figure } from "../stages/figure";
@@ -156,7 +156,7 @@ export class RidgelineFigure extends HTMLElement {
   /** The numbers behind it, a record a row. */
   rows(): Row[] {
     const { kind, store } = this.#ready();
-    return kind.rows(store.figure.peek());
+    return numbered(kind.rows(store.figure.peek()));
   }
 
   toCsv(): string {

@@ -1,6 +1,6 @@
 /** Every kind of things that can be picked, and what is asked of any of them. */
-import { formatSelection, type KindName, type Selection } from "../shared/selection";
-import type { Figure } from "../stages/figure";
+import { formatSelection, type KindName, numberOf, type Selection } from "../shared/selection";
+import { type Figure, viewName } from "../stages/figure";
 import { type Results, STAGE_FACTS, type Tab } from "../stages/list";
 import type { About, Kind, Question } from "./parts/kind";
 import { type Mark, shapeMarks, warpedMarks } from "./parts/marks";
@@ -15,7 +15,12 @@ export const KINDS = Object.fromEntries(
 ) as Readonly<Record<KindName, Kind>>;
 
 export function titleOf(picked: Selection, about: About): string {
-  return KINDS[picked.kind].title(picked, about);
+  const { title } = KINDS[picked.kind];
+  if (typeof title !== "string") {
+    return title(picked, about);
+  }
+  const name = "index" in picked ? `${title} ${numberOf(picked.index)}` : title;
+  return "view" in picked ? `${name} of ${viewName(about, picked.view)}` : name;
 }
 
 export function rowsOf(picked: Selection, about: About): Row[] {

@@ -1,6 +1,10 @@
 /** The thing that was picked, by its index in the results; anywhere it is picked, it lights up everywhere. */
 import type { Side } from "./records";
 
+/** The number by which people know what has this index, in all files too: they count from 1. */
+export const numberOf = (index: number): number => index + 1;
+export const indexOf = (number: number): number => number - 1;
+
 /**
  * The kinds of things, each with its text in links, "word:field" or "word:field.field". The words are a format and stay; what is
  * known of a kind is in its file in `kinds/`.

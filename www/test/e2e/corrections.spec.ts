@@ -150,7 +150,7 @@ async function pick(page: Page, x: number, y: number): Promise<void> {
     fields.set("select", select);
     location.hash = fields.toString();
   }, `facet:${index}`);
-  await expect(page.getByTestId("corrections").getByText(`Facet ${index},`)).toBeVisible();
+  await expect(page.getByTestId("corrections").getByText(`Facet ${index + 1},`)).toBeVisible();
 }
 
 let page: Page;

@@ -66,7 +66,7 @@ test("the model fills the window at every size, zoom and type, and what is selec
       await page.evaluate(() => {
         location.hash = `${location.hash.replace(/&select=[^&]*/, "")}&select=facet:0`;
       });
-      await expect(page.getByTestId("inspector")).toContainText("Facet 0");
+      await expect(page.getByTestId("inspector")).toContainText("Facet 1");
       await expect.poll(() => boxOf(page), size).toEqual(before);
       await page.getByRole("button", { name: "Clear" }).click();
     }
@@ -78,13 +78,13 @@ test("the model fills the window at every size, zoom and type, and what is selec
   test.info().annotations.push({ type: "share of the 3D view", description: shares.join("; ") });
 });
 
-test("a building leads to its faces, the report is read in the page, and saved", async () => {
+test("a building leads to its facets, the report is read in the page, and saved", async () => {
   await page.setViewportSize({ width: 1280, height: 800 });
   const buildings = page.getByTestId("buildings");
-  await buildings.getByRole("button", { name: /^Building 0/ }).click();
-  const faces = buildings.getByRole("button", { name: /^Face \d+/ });
-  await expect(faces.first()).toHaveAttribute("aria-pressed", "true");
-  await faces.nth(1).click();
+  await buildings.getByRole("button", { name: /^Building 1/ }).click();
+  const facets = buildings.getByRole("button", { name: /^Facet \d+/ });
+  await expect(facets.first()).toHaveAttribute("aria-pressed", "true");
+  await facets.nth(1).click();
   await expect(page.getByTestId("inspector")).toContainText(/Facet \d+/);
   expect(await axeFindings(page)).toEqual([]);
   await page.getByRole("button", { name: "Report", exact: true }).click();

@@ -119,7 +119,7 @@ export async function reconstructHouse(page: Page): Promise<void> {
 
 /** Turns to a face of the page, unless it is there. */
 export async function showFace(page: Page, name: "Result" | "Method"): Promise<void> {
-  const button = page.getByRole("group", { name: "Face" }).getByRole("button", { name });
+  const button = page.getByRole("group", { name: "Result or method" }).getByRole("button", { name });
   if ((await button.getAttribute("aria-pressed")) !== "true") {
     await button.click();
   }

@@ -12,7 +12,7 @@ test("a CityJSON alone is a model to look at, to correct, to compare and to save
   await page.goto("/");
   await give(page, [upload("houses.city.json", MODEL)]);
   await waitForStage(page, "model");
-  await expect(page.getByTestId("buildings")).toContainText("1 building 1 face, 100 m²");
+  await expect(page.getByTestId("buildings")).toContainText("1 building 1 roof facet, 100 m²");
   expect(await axeFindings(page)).toEqual([]);
   expect((await save(page, "model.city.json")).equals(MODEL)).toBe(true);
 
@@ -23,7 +23,7 @@ test("a CityJSON alone is a model to look at, to correct, to compare and to save
     .getByRole("button", { name: /Building/ })
     .click();
   await expect(page.getByTestId("sun-legend")).toContainText(
-    /Face 0: 1\d\.\d h; January to December (\d+\.\d, ){11}\d+\.\d h/,
+    /Facet 1: 1\d\.\d h; January to December (\d+\.\d, ){11}\d+\.\d h/,
   );
 
   await page.getByRole("button", { name: "Correct", exact: true }).click();

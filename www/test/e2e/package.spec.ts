@@ -175,7 +175,7 @@ test.describe("three figures in a page", () => {
     await sweep.evaluate((element: Figure) => {
       element.state = { select: "side:12.right", theta: -10 };
     });
-    await expect(sweep.getByText(/^Line 12, right side/)).toBeVisible();
+    await expect(sweep.getByText(/^Line 13, right side/)).toBeVisible();
     await expect(output).toHaveText("-10.0°");
 
     const beam = page.locator("ridgeline-figure").first();
@@ -218,7 +218,7 @@ test.describe("three figures in a page", () => {
     await open(fresh, link.slice(packed.address.length));
     const opened = fresh.locator("#sweep");
     await ready(opened);
-    await expect(opened.getByText(/^Line 12, right side/)).toBeVisible();
+    await expect(opened.getByText(/^Line 13, right side/)).toBeVisible();
     await expect(opened.getByTestId("theta")).toHaveText("-10.0°");
     await fresh.close();
   });

@@ -91,7 +91,7 @@ test("regions, directions, clusters and planes of a house", async ({ page }) => 
       .locator(".rejected-cluster")
       .nth(await plane.evaluate(loneliest))
       .click({ force: true });
-    await expect(picked).toHaveText(/^Rejected cluster \d+ of plane 0$/);
+    await expect(picked).toHaveText(/^Rejected cluster \d+ of plane 1$/);
     await expect(inspector.locator("div", { hasText: /^Gain/ })).toContainText(/-?[\d.]+ bit/);
     await page.getByRole("button", { name: "Clear" }).click();
   });

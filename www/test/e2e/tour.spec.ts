@@ -52,7 +52,7 @@ test("1: a long segment at a side of a facet, and not a kerb", async () => {
   await isAsked(1, "Segments");
   // The longest segment of all is a kerb.
   await page.getByRole("button", { name: "Next item" }).click();
-  await expect(picked()).toHaveText(/^Segment 0/);
+  await expect(picked()).toHaveText(/^Segment 1/);
   expect(await numberOf(/^Length/)).toBeGreaterThan(200);
   await expect(panel()).toContainText("no facet of the model has it as a side");
   await pickIn(page.locator(".image-view canvas").first());
@@ -176,7 +176,7 @@ test("7: a dense plane that is a building and became a facet, and no other", asy
   const fact = (label: RegExp) => inspector().locator("div", { hasText: label }).last();
   for (let i = 0; i < 60 && !(await isAnswered()); i += 1) {
     await next.click();
-    await expect(picked()).toHaveText(`Dense plane ${i}`);
+    await expect(picked()).toHaveText(`Dense plane ${i + 1}`);
     const [building = 0, ground = 0, vegetation = 0] = numbersIn(await fact(/^It is/).textContent());
     const isBuilding = building > Math.max(ground, vegetation);
     const isFacet =
@@ -220,7 +220,7 @@ test("10: a polygon of a facet, with a side that no line made, and no other", as
   const sides = inspector().locator("div", { hasText: /^Sides without a line/ });
   for (let i = 0; i < 60 && !(await isAnswered()); i += 1) {
     await next.click();
-    await expect(picked()).toHaveText(`Coplanar set ${i}`);
+    await expect(picked()).toHaveText(`Coplanar set ${i + 1}`);
     const facets = inspector()
       .locator("div", { hasText: /^Facets/ })
       .last()
@@ -241,7 +241,7 @@ test("11: a corner that proposes planes, and no other", async () => {
     .last();
   for (let i = 0; i < 60 && !(await isAnswered()); i += 1) {
     await next.click();
-    await expect(picked()).toHaveText(`Corner ${i}`);
+    await expect(picked()).toHaveText(`Corner ${i + 1}`);
     const [, verified = 0] = numbersIn(await planes.textContent());
     await expect(answer()).toHaveCount(verified > 1 ? 1 : 0);
   }

@@ -107,7 +107,12 @@ pub(super) fn axonometric(reported: &ReportedModel, index: usize, side: usize) -
             &format!("class=\"face\" fill=\"{}\"", colour(face)),
         );
         if let Surface::Roof(facet) = face.surface {
-            drawing.words(place_inside(&picture), 0.0, "number", &facet.0.to_string());
+            drawing.words(
+                place_inside(&picture),
+                0.0,
+                "number",
+                &facet.number().to_string(),
+            );
         }
     }
     drawing.finish()

@@ -37,7 +37,7 @@ impl ReportedModel {
         let building = |of: &Self, id: BuildingId| of.names[id.index()].clone();
         let facet = |of: &Self, id: FacetId| {
             let name = &of.names[of.model.facets[id.index()].building.index()];
-            format!("{name}, facet {}", id.0)
+            format!("{name}, {}", id.name())
         };
         let buildings = found.buildings.into_iter();
         let facets = found.facets.into_iter();

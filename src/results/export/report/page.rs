@@ -14,11 +14,11 @@ use crate::results::roof_report::{BuildingReport, Estimate, FacetReport, RoofEdg
 const STYLE: &str = include_str!("style.css");
 
 /// What the figures are and what is assumed of their standard deviations.
-const EXPLANATION: &str = "Lengths and areas are those of the roof's faces, without thickness and \
+const EXPLANATION: &str = "Lengths and areas are those of the roof's facets, without thickness and \
     overhang below; heights and volumes are above the ground as the model has it. After ± stands one \
     standard deviation, from the adjustment of the roof to the edges in all photographs; how well \
     the ground is known is not in it. Corners are taken as known independently of each other, \
-    heights of one building as off by the same. A figure without ± belongs to a face of which the \
+    heights of one building as off by the same. A figure without ± belongs to a facet of which the \
     photographs show too few edges.";
 
 /// The whole page.
@@ -37,14 +37,14 @@ pub(super) fn page(reported: &ReportedModel) -> String {
     }
     if !photographs.is_empty() {
         html.push(format_args!("<section>\n<h2>Photographs</h2>\n"));
-        html.head(&["Number", "<Photograph", "Faces that it shows"]);
+        html.head(&["Number", "<Photograph", "Facets that it shows"]);
         for (i, name) in photographs.iter().enumerate() {
             let shows = |of: &&Vec<String>| of.contains(name);
-            let faces = reported.photographs.iter().filter(shows).count();
-            html.row(&[(i + 1).to_string(), escaped(name), faces.to_string()]);
+            let facets = reported.photographs.iter().filter(shows).count();
+            html.row(&[(i + 1).to_string(), escaped(name), facets.to_string()]);
         }
         html.end_table();
-        let note = "It shows a face that it sees at least half of, past the other roofs.";
+        let note = "It shows a facet that it sees at least half of, past the other roofs.";
         html.push(format_args!("<p class=\"note\">{note}</p>\n</section>\n"));
     }
     sources(&mut html, reported);
@@ -72,7 +72,7 @@ fn explanation(reported: &ReportedModel) -> String {
 
 fn summary(html: &mut Html, reported: &ReportedModel) {
     let buildings = &reported.buildings;
-    let faces: usize = buildings.iter().map(|b| b.facets.len()).sum();
+    let facets: usize = buildings.iter().map(|b| b.facets.len()).sum();
     let area = area_with_unit(buildings.iter().map(|b| b.area_m2.value).sum());
     let system = match &reported.system {
         Some(system) => format!("Coordinates: {}.", escaped(system)),
@@ -85,7 +85,7 @@ fn summary(html: &mut Html, reported: &ReportedModel) {
         return;
     }
     html.push(format_args!(
-        "<p>Buildings: {}. Roof faces: {faces}, {area} in all. {system}</p>\n<p class=\"note\">{}</p>\n",
+        "<p>Buildings: {}. Roof facets: {facets}, {area} in all. {system}</p>\n<p class=\"note\">{}</p>\n",
         buildings.len(),
         explanation(reported)
     ));
@@ -97,7 +97,7 @@ fn summary(html: &mut Html, reported: &ReportedModel) {
     legend(html);
     html.head(&[
         "Building",
-        "Faces",
+        "Facets",
         "Roof area, m²",
         "In plan, m²",
         "Lowest eave, m",
@@ -156,11 +156,11 @@ fn building(
     let sides = [0, 1, 2, 3].map(|side| axonometric(reported, index, side));
     let sides = sides.concat();
     html.push(format_args!("<figure class=\"sides\">{sides}</figure>\n"));
-    let caption = "Lengths along the roof; numbers of faces with slope and fall";
+    let caption = "Lengths along the roof; numbers of facets with slope and fall";
     figure(html, &building_plan(reported, report), caption);
-    html.push(format_args!("<h3>Faces</h3>\n"));
+    html.push(format_args!("<h3>Facets</h3>\n"));
     html.head(&[
-        "Face",
+        "Facet",
         "Area, m²",
         "In plan, m²",
         "Slope, °",
@@ -178,7 +178,7 @@ fn building(
             .filter_map(|name| photographs.binary_search(name).ok());
         let numbers: Vec<String> = numbers.map(|i| (i + 1).to_string()).collect();
         html.row(&[
-            &facet.facet.0.to_string(),
+            &facet.facet.number().to_string(),
             &measure(facet.area_m2, 2, 2),
             &measure(facet.plan_area_m2, 2, 2),
             &with_sigma(facet.slope_deg, 1),
@@ -191,21 +191,21 @@ fn building(
         ]);
     }
     html.end_table();
-    html.push(format_args!("<h3>Lengths of faces</h3>\n"));
+    html.push(format_args!("<h3>Lengths of facets</h3>\n"));
     lengths(html, report);
     sheet(html, reported, report);
     html.push(format_args!("</section>\n"));
 }
 
-/// Lengths by kind, of every face.
+/// Lengths by kind, of every facet.
 fn lengths(html: &mut Html, report: &BuildingReport) {
     let kinds = || (0..RoofEdgeKind::ALL.len()).filter(|&k| report.lengths[k].is_some());
-    let mut head = vec!["Face".to_owned()];
+    let mut head = vec!["Facet".to_owned()];
     head.extend(kinds().map(|k| format!("{}, m", words(RoofEdgeKind::ALL[k]))));
     html.head(&head);
     for FacetReport { facet, lengths, .. } in &report.facets {
         let field = |k: usize| lengths[k].map_or_else(String::new, |l| measure(l, 1, 2));
-        let mut fields = vec![facet.0.to_string()];
+        let mut fields = vec![facet.number().to_string()];
         fields.extend(kinds().map(field));
         html.row(&fields);
     }

@@ -144,7 +144,7 @@ pub(super) fn building_plan(reported: &ReportedModel, report: &BuildingReport) -
                 drawing.line(to, to - fall * 1.2 + side * 0.7, "fall");
             }
         }
-        drawing.words(middle, 0.0, "number", &of.facet.0.to_string());
+        drawing.words(middle, 0.0, "number", &of.facet.number().to_string());
         let slope = format!("{:.0}°", of.slope_deg.value);
         let side = if facet.plane.normal.y < 0.0 {
             -3.0
@@ -193,7 +193,7 @@ pub(super) fn overview(reported: &ReportedModel) -> Plan {
         let largest = facets.max_by(|a, b| a.plan_area_m2.value.total_cmp(&b.plan_area_m2.value));
         let largest = largest.expect("a building has facets");
         let facet = &reported.model.facets[largest.facet.index()];
-        let number = report.building.0.to_string();
+        let number = report.building.number().to_string();
         drawing.words(place_inside(&sheet.picture(facet)), 0.0, "number", &number);
     }
     sheet.draw_scale(&mut drawing);

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::super::format::{rounded, to_bytes};
 use super::reported::ReportedModel;
 use crate::base::geometry::{Polygon, bounds, mean_point};
+use crate::base::ids::FacetId;
 use crate::results::roof_report::{BuildingReport, EdgeReport, Estimate, FacetReport};
 use crate::roofs::model::{Facet, Obstruction};
 
@@ -83,7 +84,7 @@ fn segment(reported: &ReportedModel, report: &FacetReport) -> Value {
         usable
     });
     let mut segment = json!({
-        "facet": report.facet,
+        "facet": report.facet.number(),
         "probability": rounded(report.probability, 4),
         "center": reported.lat_lon(&center),
         "centerMeters": world(reported, &center),
@@ -133,8 +134,8 @@ fn edge_of(reported: &ReportedModel, report: &EdgeReport) -> Value {
     let edge = &report.edge;
     let mut value = json!({
         "class": edge.kind.name(),
-        "facet": edge.facet,
-        "otherFacet": edge.other,
+        "facet": edge.facet.number(),
+        "otherFacet": edge.other.map(FacetId::number),
         "from": world(reported, &edge.segment.p0),
         "to": world(reported, &edge.segment.p1),
     });

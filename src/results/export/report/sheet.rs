@@ -1,5 +1,5 @@
 //! What roofers and planners of solar panels ask for: lengths by class, the covering with waste,
-//! what setbacks leave of each face.
+//! what setbacks leave of each facet.
 
 use super::html::{Html, in_feet, measure, with_feet};
 use super::reported::ReportedModel;
@@ -68,7 +68,7 @@ fn waste(html: &mut Html, report: &BuildingReport) {
 
 fn usable(html: &mut Html, reported: &ReportedModel, report: &BuildingReport) {
     html.push(format_args!("<h3>Area that setbacks leave</h3>\n"));
-    let mut head = vec!["Face".to_owned()];
+    let mut head = vec!["Facet".to_owned()];
     head.extend(
         reported
             .setbacks
@@ -78,7 +78,7 @@ fn usable(html: &mut Html, reported: &ReportedModel, report: &BuildingReport) {
     head.push("<Yield".to_owned());
     html.head(&head);
     for facet in &report.facets {
-        let mut fields = vec![facet.facet.0.to_string()];
+        let mut fields = vec![facet.facet.number().to_string()];
         fields.extend(facet.usable.iter().map(|of| measure(of.area_m2, 2, 2)));
         let link = reported.pvgis(facet).map(|address| {
             let address = escaped(&address);
@@ -108,7 +108,7 @@ pub(super) fn sources(html: &mut Html, reported: &ReportedModel) {
     }
     let source = escaped(&WasteTable::built_in().source);
     let yields = "A link opens PVGIS of the Joint Research Centre with the place, slope and direction of the \
-                  face, which thereby leave this computer.";
+                  facet, which thereby leave this computer.";
     html.push(format_args!(
         "<dt>Waste</dt>\n<dd>{source}</dd>\n<dt>Yield</dt>\n<dd>{yields}</dd>\n</dl>\n"
     ));

@@ -5,7 +5,6 @@ use std::fmt::Write;
 
 use super::super::format::rounded;
 use super::reported::ReportedModel;
-use crate::base::ids::FacetId;
 use crate::results::roof_report::{Estimate, Lengths, RoofEdgeKind};
 
 /// The buildings, one a line.
@@ -64,7 +63,7 @@ pub(super) fn facets(reported: &ReportedModel) -> String {
     table.end_row();
     for (report, name) in reported.buildings.iter().zip(&reported.names) {
         for facet in &report.facets {
-            table.words(&[name, &facet.facet.0.to_string()]);
+            table.words(&[name, &facet.facet.number().to_string()]);
             for estimate in [
                 Some(facet.area_m2),
                 Some(facet.plan_area_m2),
@@ -96,8 +95,13 @@ pub(super) fn edges(reported: &ReportedModel) -> String {
             let (length, edge) = (edge.length_m, &edge.edge);
             let other = edge
                 .other
-                .map_or_else(String::new, |FacetId(id)| id.to_string());
-            table.words(&[name, edge.kind.name(), &edge.facet.0.to_string(), &other]);
+                .map_or_else(String::new, |id| id.number().to_string());
+            table.words(&[
+                name,
+                edge.kind.name(),
+                &edge.facet.number().to_string(),
+                &other,
+            ]);
             table.estimate(Some(length));
             for p in [edge.segment.p0, edge.segment.p1] {
                 for c in (p + reported.origin).coords.iter() {

@@ -61,7 +61,7 @@ impl ReportedModel {
             let faces = faces.collect();
             let ground_m = rounded(building.ground_z + scene.origin.z, 4);
             if written.add_building(faces, Some(ground_m - scene.origin.z)) {
-                written.names.push(format!("building-{i}"));
+                written.names.push(BuildingId::from_index(i).name());
                 written.walls.push(
                     walls
                         .get(i)

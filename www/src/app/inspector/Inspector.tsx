@@ -5,6 +5,8 @@ import { placeAmong, rowsOf, siblingsOf, titleOf } from "../../kinds/kinds";
 import type { Bars, Related, Row } from "../../kinds/parts/rows";
 import { pageFigure } from "../selection/selectionQueries";
 import { face, select, selection, tab } from "../state/viewState";
+import { Linked } from "../words/Term";
+import type { TermId } from "../words/terms";
 import { EvidenceBars } from "./EvidenceBars";
 
 export function Inspector() {
@@ -64,6 +66,9 @@ function Steps() {
   );
 }
 
+/** Terms in the labels, by their words. */
+const TERMS: Record<string, TermId> = { nats: "nat", "Sim(θ)": "similarity", σ: "standard-deviation" };
+
 function Facts({ title, rows }: { title: string; rows: readonly Row[] }) {
   return (
     <>
@@ -71,7 +76,9 @@ function Facts({ title, rows }: { title: string; rows: readonly Row[] }) {
       <dl class="facts">
         {rows.map(([label, value, note]) => (
           <div key={label} class={isBars(value) ? "broad" : undefined}>
-            <dt>{label}</dt>
+            <dt>
+              <Linked text={label.replace(/\bnats\b|Sim\(θ\)|σ/, (word) => `[[${TERMS[word]}|${word}]]`)} />
+            </dt>
             <dd class="numbers">
               <Value value={value} />
               {note !== undefined && <span class="muted"> {note}</span>}

@@ -8,6 +8,7 @@ import type {
   SegmentOutcome,
   TestedRelation,
 } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import { percentText, signed } from "./numberText";
 
 /** Why a side of a line has no half-plane (B99 4.1). */
@@ -40,7 +41,7 @@ export function outcomeWords(outcome: SegmentOutcome | null): string {
     case undefined:
       return "not matched yet";
     case "matched":
-      return `matched, in match ${outcome.line}`;
+      return `matched, in match ${numberOf(outcome.line)}`;
     case "no_candidate":
       return "rejected: no segment in any beam";
     case "below_threshold":
@@ -48,9 +49,9 @@ export function outcomeWords(outcome: SegmentOutcome | null): string {
     case "not_verified":
       return `rejected: ${NOT_VERIFIED[outcome.reason] ?? outcome.reason}`;
     case "left_out":
-      return `rejected: match ${outcome.line}, made from its pair, fits better without it`;
+      return `rejected: match ${numberOf(outcome.line)}, made from its pair, fits better without it`;
     case "lost_to":
-      return `rejected: its candidates fit match ${outcome.line} better`;
+      return `rejected: its candidates fit match ${numberOf(outcome.line)} better`;
   }
 }
 

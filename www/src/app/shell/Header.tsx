@@ -113,5 +113,7 @@ const FACES: readonly (readonly [Face, string, string])[] = [
 ];
 
 function FaceSwitch() {
-  return <Choice legend="Face" choices={FACES} chosen={face.value} choose={showFace} class="faces" />;
+  return (
+    <Choice legend="Result or method" choices={FACES} chosen={face.value} choose={showFace} class="faces" />
+  );
 }

@@ -1,5 +1,4 @@
 /** What a printed page has that the screen says elsewhere: which project, by which method, and what was found. */
-
 import { stageWords } from "../../stages/catalogue";
 import { counted } from "../parts/counted";
 import { method } from "../state/parameters";
@@ -55,7 +54,7 @@ function RoofAreas() {
       <thead>
         <tr>
           <th scope="col">Building</th>
-          <th scope="col">Roof faces</th>
+          <th scope="col">Facets</th>
           <th scope="col">Area along the slope</th>
         </tr>
       </thead>

@@ -1,6 +1,7 @@
 /** In the figures of W96, and in plan: main directions, regions, faces. */
 import { boundsOf, DEGREE, isInside } from "../../shared/linear";
 import type { Vec2 } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import type { Figure } from "../../stages/figure";
 import { inUnit, kindOf, readQuantity } from "../judging/quantity";
 import { figureExercise, mistakeAmong, type Outcome } from "./judgeFigure";
@@ -172,7 +173,7 @@ export const wholeFace = figureExercise({
     );
     const [first] = right;
     return {
-      words: `Regions ${right.join(", ")} of ${shown.scene?.views[0]?.name ?? ""}, and such of the other views.`,
+      words: `Regions ${right.map(numberOf).join(", ")} of ${shown.scene?.views[0]?.name ?? ""}, and such of the other views.`,
       ...(first === undefined ? {} : { state: { select: `region:0.${first}`, view: 0 } }),
     };
   },
@@ -238,7 +239,7 @@ export const hipEnd = figureExercise({
     const facets = shown.results.facets ?? [];
     const right = facets.flatMap(({ outer }, i) => (isHipEnd(faceOfFacet(outer)) ? [i] : []));
     return {
-      words: `Facets ${right.join(", ")}.`,
+      words: `Facets ${right.map(numberOf).join(", ")}.`,
       ...(right[0] === undefined ? {} : { state: { select: `facet:${right[0]}` } }),
     };
   },

@@ -3,6 +3,7 @@
 import type { FigureState } from "../../element/figureState";
 import { lengthOf } from "../../shared/flatArrays";
 import type { PairCandidate } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import type { Figure } from "../../stages/figure";
 import { type Asked, figureExercise, type Outcome } from "./judgeFigure";
 import { distanceFrom, edgeShown, type RoofEdge, type Stretch, segmentOf, shows } from "./truth";
@@ -60,7 +61,7 @@ export const pickEave = figureExercise({
     const all = edgesOfView(shown, 0).filter(({ edge, at }) => edge?.kind === "eave" && isLong(at));
     const [first] = all;
     return {
-      words: `Segments ${all.map(({ index }) => index).join(", ")} of ${shown.scene?.views[0]?.name ?? ""}, and those of the other views.`,
+      words: `Segments ${all.map(({ index }) => numberOf(index)).join(", ")} of ${shown.scene?.views[0]?.name ?? ""}, and those of the other views.`,
       ...(first === undefined ? {} : { state: { select: `segment:0.${first.index}`, view: 0 } }),
     };
   },
@@ -188,7 +189,7 @@ function candidateAnswer(shown: Figure, isRight: (truth: Truth, candidate: PairC
   );
   const name = (i: number) => {
     const { view = 0, segment = 0 } = candidates[i] ?? {};
-    return `${shown.scene?.views[view]?.name ?? view} · ${segment}`;
+    return `${shown.scene?.views[view]?.name ?? view} · ${numberOf(segment)}`;
   };
   const [first] = right;
   return {

@@ -1,6 +1,5 @@
 /** A region of a view (W96 3.3). */
 import { grouped } from "../../app/parts/numberText";
-import { viewName } from "../../stages/figure";
 import type { Kind } from "../parts/kind";
 import { AREA } from "../parts/marks";
 import { allOf, type Row } from "../parts/rows";
@@ -8,7 +7,7 @@ import { allOf, type Row } from "../parts/rows";
 const MOVES: Record<string, string> = { dropped: "Break points dropped", merged: "Regions merged" };
 
 export default {
-  title: ({ view, index }, about) => `Region ${index} of ${viewName(about, view)}`,
+  title: "Region",
   rows({ view, index }, { results }) {
     const found = results.regions[view];
     const region = found?.regions[index];

@@ -1,7 +1,5 @@
 /** A line of edgels that is no segment (B99 3.2). */
-
 import { REJECTED_STRIDE } from "../../shared/flatArrays";
-import { viewName } from "../../stages/figure";
 import type { Kind } from "../parts/kind";
 import { CHOSEN, endsIn } from "../parts/marks";
 import { allOf } from "../parts/rows";
@@ -15,7 +13,7 @@ const REASONS = [
 ];
 
 export default {
-  title: ({ view, index }, about) => `Rejected line ${index} of ${viewName(about, view)}`,
+  title: "Rejected line",
   rows({ view, index }, { results }) {
     const [p, q] = endsIn(results.rejected[view], index, REJECTED_STRIDE);
     const reason = results.rejected[view]?.[index * REJECTED_STRIDE + 4] ?? -1;

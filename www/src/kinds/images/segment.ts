@@ -3,7 +3,6 @@ import { outcomeWords } from "../../app/parts/reasonText";
 import { SEGMENT_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import type { Vec2, Vec3, ViewInfo } from "../../shared/records";
-import { viewName } from "../../stages/figure";
 import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { CHOSEN, diamond, endsIn, type Mark, SELECTED_PX, THIN_PX } from "../parts/marks";
@@ -11,7 +10,7 @@ import { allOf, degreesText, links, type Row } from "../parts/rows";
 import { linesShape } from "../parts/shapes";
 
 export default {
-  title: ({ view, index }, about) => `Segment ${index} of ${viewName(about, view)}`,
+  title: "Segment",
   rows({ view, index }, { results, detail: { story } }) {
     const [p, q] = endsIn(results.segments[view], index, SEGMENT_STRIDE);
     return p === undefined || q === undefined

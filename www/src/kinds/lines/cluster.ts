@@ -1,14 +1,14 @@
 /** A rejected cluster of a cluster plane (W96 3.5); the selected ones are 3D lines. */
 import { degreesOf } from "../../app/parts/numberText";
 import type { Vec3 } from "../../shared/records";
-import type { Picked } from "../../shared/selection";
+import { numberOf, type Picked } from "../../shared/selection";
 import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { allOf } from "../parts/rows";
 import { openLine } from "../parts/shapes";
 
 export default {
-  title: ({ plane, index }) => `Rejected cluster ${index} of plane ${plane}`,
+  title: ({ plane, index }) => `Rejected cluster ${numberOf(index)} of plane ${numberOf(plane)}`,
   rows({ plane, index }, { results }) {
     const trace = results.clusters?.[plane];
     const found = trace?.refused[index];

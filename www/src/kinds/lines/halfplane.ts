@@ -7,7 +7,7 @@ import { areas } from "../parts/shapes";
 import { allSides } from "./side";
 
 export default {
-  title: ({ index }) => `Half-plane ${index}`,
+  title: "Half-plane",
   rows({ index }, about) {
     const { halfPlanes, grouping, facets } = about.results;
     const plane = halfPlanes?.[index];

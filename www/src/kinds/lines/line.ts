@@ -2,6 +2,7 @@
 import { CONTRADICTION_WORDS, ORIGIN_WORDS, REJECTION_WORDS } from "../../app/parts/reasonText";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { HalfPlane, LineRecord } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import { viewName } from "../../stages/figure";
 import { evidenceRow, probabilityRow } from "../parts/evidenceRows";
 import type { About, Kind } from "../parts/kind";
@@ -18,7 +19,7 @@ import {
 import { lineEnds, linesShape } from "../parts/shapes";
 
 export default {
-  title: ({ index }) => `3D line ${index}`,
+  title: "3D line",
   rows({ index }, about) {
     const [p0, p1] = lineEnds(index, about.results);
     if (p0 === undefined || p1 === undefined) {
@@ -64,7 +65,7 @@ function recordRows(record: LineRecord, about: About): Rows {
     ["σ across", `${(100 * sigma_m).toFixed(1)} cm`],
     ...supports.map(({ view, segments, kind, score }): Row => {
       const to = (index: number): Related => ({
-        name: String(index),
+        name: String(numberOf(index)),
         selection: { kind: "segment", view, index },
       });
       const note = isClustered ? `show ${Math.round(100 * score)} % of it` : `${kind} ${score.toFixed(2)}`;

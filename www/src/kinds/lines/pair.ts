@@ -3,6 +3,7 @@ import { PAIR_WORDS } from "../../app/parts/reasonText";
 import { add, dot, norm, sub, unit } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import type { PlaneCandidate, PlaneTrace, Vec3 } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { type Mark, type Seen, seenFrom, shapeMarks } from "../parts/marks";
@@ -10,7 +11,8 @@ import { indicesOf, links, numbered, type Row } from "../parts/rows";
 import { lineEnds, linesShape } from "../parts/shapes";
 
 export default {
-  title: ({ index }, { results }) => `Pair of lines ${linesOfPair(index, results).join(" and ")}`,
+  title: ({ index }, { results }) =>
+    `Pair of lines ${linesOfPair(index, results).map(numberOf).join(" and ")}`,
   rows({ index }, { results: { rectangles, facets } }) {
     const pair = rectangles?.pairs[index];
     if (rectangles == null || pair === undefined) {

@@ -1,13 +1,13 @@
 /** A side of a 3D line, whether it has a half-plane or not (B99 4.1). */
 import { REJECTION_WORDS } from "../../app/parts/reasonText";
-import type { Selection } from "../../shared/selection";
+import { numberOf, type Selection } from "../../shared/selection";
 import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { indicesOf, links } from "../parts/rows";
 import { linesShape } from "../parts/shapes";
 
 export default {
-  title: ({ line, side }) => `3D line ${line}, ${side} side`,
+  title: ({ line, side }) => `3D line ${numberOf(line)}, ${side} side`,
   rows({ line, side }, { results: { sides, halfPlanes } }) {
     const isOwn = (one: { line: number; side: string }) => one.line === line && one.side === side;
     const rejection = sides.find(isOwn)?.rejection;

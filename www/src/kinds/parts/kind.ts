@@ -16,8 +16,8 @@ export type Question =
   | { about: "side"; line: number; side: Side };
 
 export interface Kind<K extends KindName = KindName> {
-  /** Its name over its numbers. */
-  title(picked: Picked<K>, about: About): string;
+  /** What it is over its numbers; a word alone gets its own number, and of things in a view the name of that. */
+  title: string | ((picked: Picked<K>, about: About) => string);
   /** Its numbers with units, what made it and what it made. */
   rows(picked: Picked<K>, about: About): Rows;
   /** The things that are gone through from this one, in their order; from none, those of the view that is shown. */

@@ -1,7 +1,7 @@
 /** The rows of the inspector, and the things that they lead on to. */
 import { degreesOf, slopeOf } from "../../app/parts/numberText";
 import type { Facet, PlaneGroup, SceneInfo, Vec3 } from "../../shared/records";
-import type { IndexedKind, Selection } from "../../shared/selection";
+import { type IndexedKind, numberOf, type Selection } from "../../shared/selection";
 import type { Results } from "../../stages/list";
 
 /** A number of the picked thing, things to go on to (they made it or it made them), or bars. */
@@ -27,8 +27,11 @@ export interface Bar {
 
 /** To the thing of this kind at an index. */
 export function linkTo(kind: IndexedKind, index: number): Related {
-  return { name: String(index), selection: { kind, index } };
+  return { name: String(numberOf(index)), selection: { kind, index } };
 }
+
+/** The number of what has this index, where it is nothing to go on to. */
+export const numberRow = (label: string, index: number): Row => [label, String(numberOf(index))];
 
 /** To the things of this kind at these indices. */
 export function links(label: string, kind: IndexedKind, indices: readonly number[]): Row {

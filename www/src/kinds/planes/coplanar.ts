@@ -6,7 +6,7 @@ import { degreesText, groupsAndFacets, links, numbered, slopeText } from "../par
 import { areas } from "../parts/shapes";
 
 export default {
-  title: ({ index }) => `Coplanar set ${index}`,
+  title: "Coplanar set",
   rows({ index }, { results }) {
     const set = results.coplanar?.sets[index];
     const trace = results.coplanar?.trace.sets[index];

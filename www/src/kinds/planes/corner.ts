@@ -2,13 +2,14 @@
 import { counted } from "../../app/parts/counted";
 import { edgesOfCorner, isVerifiedPlane } from "../../shared/proposed";
 import { cornerPlanesOf } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import type { Results } from "../../stages/list";
 import type { Kind } from "../parts/kind";
 import { groupsAndFacets, indicesOf, links, numbered } from "../parts/rows";
 import { areas, openLine } from "../parts/shapes";
 
 export default {
-  title: ({ index }) => `Corner ${index}`,
+  title: "Corner",
   rows({ index }, { results }) {
     const { adjacency } = results;
     const corner = adjacency?.trace.corners[index];
@@ -17,7 +18,10 @@ export default {
     }
     const planes = planesOfCorner(index, results);
     const verified = planes.filter((i) => isVerifiedPlane(adjacency.planes[i]));
-    const inside = verified.map((i) => ({ name: `plane ${i}`, nats: adjacency.planes[i]?.inside_nats ?? 0 }));
+    const inside = verified.map((i) => ({
+      name: `plane ${numberOf(i)}`,
+      nats: adjacency.planes[i]?.inside_nats ?? 0,
+    }));
     const sigmas = corner.covariance.map((row, i) => Math.sqrt(row[i] ?? 0));
     const neighbours = corner.edges.flatMap(({ neighbour }) => (neighbour === null ? [] : [neighbour]));
     return [

@@ -14,7 +14,7 @@ import { linesShape } from "../parts/shapes";
 import dense from "./dense";
 
 export default {
-  title: ({ index }) => `Group ${index}`,
+  title: "Group",
   rows({ index }, { results }) {
     const group = results.grouping?.groups[index];
     if (group === undefined) {
@@ -57,6 +57,6 @@ export function proposalRows(proposed: Pick<PlaneGroup, "proposals">, { adjacenc
     planes.length > 0 && links("Dense planes", "dense", planes),
     sets.length > 0 && links("Coplanar sets", "coplanar", sets),
     corners.length > 0 && links("Proposed by corners", "corner", corners),
-    rectangles > 0 && ["Rectangles", `${rectangles} in its plane (W96 3.6)`],
+    rectangles > 0 && ["Rectangles", `${rectangles} in its plane`],
   ];
 }

@@ -7,12 +7,21 @@ import { probabilityRow } from "../parts/evidenceRows";
 import type { Kind } from "../parts/kind";
 import { obstructionText } from "../parts/obstructionText";
 import { buildingOfFacet } from "../parts/refinedBuildings";
-import { azimuthText, indicesOf, links, linkTo, numbered, type Row, slopeText } from "../parts/rows";
+import {
+  azimuthText,
+  indicesOf,
+  links,
+  linkTo,
+  numbered,
+  numberRow,
+  type Row,
+  slopeText,
+} from "../parts/rows";
 import { facetShape } from "../parts/shapes";
 import { proposalRows } from "../planes/group";
 
 export default {
-  title: ({ index }) => `Facet ${index}`,
+  title: "Facet",
   rows({ index }, { results }) {
     const facet = results.facets?.[index];
     if (facet === undefined) {
@@ -22,14 +31,14 @@ export default {
     const { lines = [], half_planes = [], obstructions = [], uncertainty } = facet;
     const groups = indicesOf(results.grouping?.groups, (group) => isMadeFrom(facet, group));
     return [
-      ["Building", String(facet.building)],
+      numberRow("Building", facet.building),
       ["Area", `${slopedArea(facet).toFixed(1)} m²`],
       ["Slope", `${slopeText(facet.plane.normal)}${plusMinus(uncertainty?.slope_deg, "°")}`],
-      ["Faces", Math.hypot(nx, ny) < 0.02 ? "level" : azimuthText(nx, ny)],
+      ["Falls towards", Math.hypot(nx, ny) < 0.02 ? "level" : azimuthText(nx, ny)],
       ["Corners", `${facet.outer.length + facet.holes.flat().length}${plusMinus(cornerSigma(facet), " m")}`],
       uncertainty && ["Height in its middle", `± ${uncertainty.height_m.toFixed(2)} m`],
       ["Similarity", facet.similarity.toFixed(3)],
-      ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
+      ["Outline on real lines, τ", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
       probabilityRow(facet.probability),
       ...obstructions.map((one, i): Row => [`Obstruction ${i + 1}`, obstructionText(one)]),
       links("3D lines", "line", lines),

@@ -6,7 +6,7 @@ import { numbered } from "../parts/rows";
 
 export default {
   title: ({ index }, { results: { verification } }) =>
-    `Footprint ${verification?.register?.footprints[index]?.name ?? index}`,
+    `Footprint ${verification?.register?.footprints[index]?.name ?? ""}`,
   rows({ index }, { results: { verification } }) {
     const register = verification?.register;
     const found = register?.footprints[index];

@@ -9,7 +9,7 @@ import { links, numbered } from "../parts/rows";
 import { facetShape, type Shape } from "../parts/shapes";
 
 export default {
-  title: ({ index }) => `Building ${index}, refined`,
+  title: "Refined building",
   rows({ index }, { results }) {
     const found = results.refinement?.buildings[index];
     if (found === undefined) {

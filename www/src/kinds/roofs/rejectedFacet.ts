@@ -3,11 +3,11 @@ import { facetRejectionWords } from "../../app/parts/reasonText";
 import { areaVector, norm } from "../../shared/linear";
 import { evidenceRow } from "../parts/evidenceRows";
 import type { Kind } from "../parts/kind";
-import { numbered, slopeText } from "../parts/rows";
+import { numbered, numberRow, slopeText } from "../parts/rows";
 import { areas } from "../parts/shapes";
 
 export default {
-  title: ({ index }) => `Rejected facet ${index}`,
+  title: "Rejected facet",
   rows({ index }, { results: { verification } }) {
     const facet = verification?.rejected[index];
     if (facet === undefined) {
@@ -18,7 +18,7 @@ export default {
     return [
       ["Rejected", facetRejectionWords(reason)],
       "improbable" in reason && evidenceRow("For and against it (nats)", reason.improbable.evidence),
-      group !== undefined && ["Group", String(group)],
+      group !== undefined && numberRow("Group", group),
       ["Area", `${norm(area).toFixed(1)} m²`],
       ["Slope", slopeText(area)],
       ["Corners", String(outline.length)],

@@ -6,7 +6,7 @@ import { allOf, links } from "../parts/rows";
 import { openLine } from "../parts/shapes";
 
 export default {
-  title: ({ building, index }) => `Relation ${index} of building ${building}`,
+  title: "Relation",
   rows({ building, index }, { results, params }) {
     const found = results.refinement?.buildings[building]?.relations[index];
     if (found === undefined) {

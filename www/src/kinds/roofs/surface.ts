@@ -1,5 +1,6 @@
 /** A surface of the model as it is written: a roof, a wall, the ground. */
 import type { Kind } from "../parts/kind";
+import { numberRow } from "../parts/rows";
 import facet from "./facet";
 
 /** Rows of a facet that a surface shows by itself. */
@@ -9,11 +10,11 @@ export default {
   title: ({ surface }) => surface.charAt(0).toUpperCase() + surface.slice(1),
   rows: ({ areaM2, building, facet: index }, about) => [
     ["Area", `${areaM2.toFixed(1)} m²`],
-    building !== null && ["Building", String(building)],
+    building !== null && numberRow("Building", building),
     ...(index === null
       ? []
       : [
-          ["Facet", String(index)] as const,
+          numberRow("Facet", index),
           ...facet.rows({ kind: "facet", index }, about).filter((row) => row && !SHOWN.has(row[0])),
         ]),
   ],

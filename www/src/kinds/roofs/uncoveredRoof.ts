@@ -2,11 +2,11 @@
 import { percentText } from "../../app/parts/numberText";
 import { evidenceRow } from "../parts/evidenceRows";
 import type { Kind } from "../parts/kind";
-import { numbered } from "../parts/rows";
+import { links, numbered } from "../parts/rows";
 import { areas } from "../parts/shapes";
 
 export default {
-  title: ({ index }) => `Place without a facet ${index}`,
+  title: "Place without a facet",
   rows({ index }, { results: { uncovered } }) {
     const roof = uncovered?.[index];
     if (roof === undefined) {
@@ -16,10 +16,9 @@ export default {
     const rejected = why === "no_plane" ? null : why.rejected;
     return [
       ["Probability of a roof", percentText(probability)],
-      [
-        "No facet, because",
-        rejected === null ? "no plane won the place" : `rejected facet ${rejected.facet} is improbable`,
-      ],
+      rejected === null
+        ? ["No facet, because", "no plane won the place"]
+        : links("Rejected as improbable", "rejectedFacet", [rejected.facet]),
       rejected !== null && evidenceRow("For and against it (nats)", rejected.evidence),
       ["Area in plan", `${area_m2.toFixed(1)} m²`, "that no facet covers"],
     ];

@@ -9,7 +9,7 @@ import { LINE_STRIDE, lineAt } from "../../shared/flatArrays";
 import { boundsOf, mix3, nearestOf, sub } from "../../shared/linear";
 import { category } from "../../shared/palette";
 import type { ClusterTrace, Directions, Vec2 } from "../../shared/records";
-import { pickedIndex, type Selection } from "../../shared/selection";
+import { numberOf, pickedIndex, type Selection } from "../../shared/selection";
 import type { Figure } from "../figure";
 import type { Results } from "../list";
 
@@ -39,7 +39,7 @@ export function planeNames(
   directions: Pick<Directions, "windows"> | null,
 ): string[] {
   const buildings = (directions?.windows ?? []).flatMap((window, i) =>
-    window.directions.flatMap(() => [i, i]),
+    window.directions.flatMap(() => [numberOf(i), numberOf(i)]),
   );
   return clusters.map(({ azimuth }, i) => {
     const along = `along ${degreesOf(azimuth).toFixed(0)}°`;

@@ -4,7 +4,7 @@ import { percentText } from "../../app/parts/numberText";
 import { results } from "../../app/state/results";
 import { selection } from "../../app/state/viewState";
 import { densePlanesOf } from "../../shared/records";
-import { pickedIndex } from "../../shared/selection";
+import { numberOf, pickedIndex } from "../../shared/selection";
 import { likeliestClass } from "../../shared/surfaceClass";
 import type { Results } from "../list";
 import { ofPicked, type StageStep } from "../tourStep";
@@ -28,7 +28,7 @@ export default [
 type DensePlaneParts = NonNullable<ReturnType<typeof densePlaneParts>>;
 
 function denseWords({ patches, rmsM, facets }: DensePlaneParts): string {
-  return `${counted(patches, "patches")}, each matched on its own, lie within ${(100 * rmsM).toFixed(0)} cm (RMS) of one plane: that of facet ${facets.join(", ")}.`;
+  return `${counted(patches, "patches")}, each matched on its own, lie within ${(100 * rmsM).toFixed(0)} cm (RMS) of one plane: that of facet ${facets.map(numberOf).join(", ")}.`;
 }
 
 function halfPlaneWords({ halfPlanes }: DensePlaneParts): string {

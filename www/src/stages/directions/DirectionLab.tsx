@@ -1,4 +1,5 @@
 /** W96 3.4: the histogram of azimuths (figures 4 and 5), and which direction an image line follows. */
+import { numberOf } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../../app/parts/charts";
 import { degreesOf } from "../../app/parts/numberText";
@@ -21,7 +22,7 @@ export function DirectionLab({ figure }: { figure: Figure }) {
   return (
     <div class="chart-lab" data-testid="direction-lab">
       <PlaneChoice
-        names={found.windows.map((_, i) => `Building ${i}`)}
+        names={found.windows.map((_, i) => `Building ${numberOf(i)}`)}
         shown={shown}
         onShow={figure.act.showPlane}
       />

@@ -1,4 +1,5 @@
 /** B99 figures 21 to 23: the facets in plan, each in the colour of its plane, and the border lines that enclose them. */
+import { numberOf } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { buttonShape, closedPathOf, Fit, type Frame, pathOf } from "../../app/parts/charts";
 import { counted } from "../../app/parts/counted";
@@ -87,7 +88,7 @@ function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
   const areas: readonly Omit<AreaProps, "figure">[] = [
     ...facets.map((facet, index) => ({
       picks: { kind: "facet", index } as const,
-      name: `Facet ${index}`,
+      name: `Facet ${numberOf(index)}`,
       className: "plan-facet",
       fill: roofTintHex(facet),
       d: closedPathOf(facet.outer.map(at)),
@@ -133,7 +134,7 @@ function Plan({ frame, figure, grouping, verification, facets }: PlanProps) {
         const [x, y] = at(middleOf(ring));
         return (
           <text key={i} class="plan-name" x={x} y={y + 4} text-anchor="middle">
-            {i}
+            {numberOf(i)}
           </text>
         );
       })}

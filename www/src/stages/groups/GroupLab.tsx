@@ -5,7 +5,7 @@ import { degreesOf, slopeOf } from "../../app/parts/numberText";
 import { Filmstrip } from "../../app/view/images/Filmstrip";
 import { category } from "../../shared/palette";
 import { densePlanesOf, type PlaneGroup, rectanglesOf } from "../../shared/records";
-import { pickedIndex } from "../../shared/selection";
+import { numberOf, pickedIndex } from "../../shared/selection";
 import type { Figure } from "../figure";
 
 /** Figures 17 to 20: the groups, largest first. */
@@ -34,7 +34,7 @@ export function GroupLab({ figure }: { figure: Figure }) {
                 }}
               >
                 <span class="dot" style={{ background: category(index) }} aria-hidden="true" />
-                <span>Group {index}</span>
+                <span>Group {numberOf(index)}</span>
                 <span class="muted numbers">
                   {counted(new Set(group.members.map(({ line }) => line)).size, "lines")} ·{" "}
                   {counted(fans, "half-planes")} · {proposalWords(group)}

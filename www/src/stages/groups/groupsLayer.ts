@@ -2,9 +2,11 @@
  * Groups of coplanar half-planes in colours of their own (B99 figures 17 to 20): the lines, the facets that they became, and
  * names on these. Lines of groups without a facet, most of them on the ground, are thin and dim.
  */
+
 import { Color } from "three";
 import { category, PALETTE } from "../../shared/palette";
 import { type Facet, type GroupingTrace, isMadeFrom, type Segment3 } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import { facetMesh, triangulate } from "../../viewer/layers/facets";
 import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
 import type { Layer } from "../../viewer/scene/layer";
@@ -105,7 +107,7 @@ function namesOf(facets: readonly Facet[], became: readonly number[]) {
       largest.set(group, facet);
     }
   });
-  return [...largest].map(([group, { outer }]) => ({ text: String(group), at: middleOf(outer) }));
+  return [...largest].map(([group, { outer }]) => ({ text: String(numberOf(group)), at: middleOf(outer) }));
 }
 
 /** Whether a line lies over a facet and not below the roof. */

@@ -3,7 +3,7 @@ import { counted } from "../../app/parts/counted";
 import { results } from "../../app/state/results";
 import { selection } from "../../app/state/viewState";
 import { isMadeFrom } from "../../shared/records";
-import { pickedIndex } from "../../shared/selection";
+import { numberOf, pickedIndex } from "../../shared/selection";
 import type { Results } from "../list";
 import { ofPicked, type StageStep } from "../tourStep";
 
@@ -14,11 +14,11 @@ export default [
     question: "Pick a group of at least four lines that became a facet.",
     ...ofPicked(() => groupParts(results.value, pickedIndex(selection.value, "group")), {
       answer: ({ lines, facets }) =>
-        `${counted(lines, "lines")}, each found on its own, lie in one plane: facet ${facets.join(", ")} of the model.`,
+        `${counted(lines, "lines")}, each found on its own, lie in one plane: facet ${facets.map(numberOf).join(", ")} of the model.`,
       hint: ({ lines, facets }) =>
         facets.length === 0
           ? `${counted(lines, "lines")}, but no facet: nothing shows that there is a roof in this plane.`
-          : `Facet ${facets.join(", ")}, from ${counted(lines, "lines")}: look for a group with more.`,
+          : `Facet ${facets.map(numberOf).join(", ")}, from ${counted(lines, "lines")}: look for a group with more.`,
       isFound: ({ lines, facets }) => lines >= 4 && facets.length > 0,
     }),
   },

@@ -10,6 +10,7 @@ import type { WarpedPicture } from "../../shared/calls";
 import { DEGREE } from "../../shared/linear";
 import { category } from "../../shared/palette";
 import type { SideTrace } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import { type Figure, viewName } from "../figure";
 
 export function SimLab({ figure }: { figure: Figure }) {
@@ -74,7 +75,7 @@ function SideHead({ figure, side }: OfSide) {
   return (
     <div class="row spread">
       <p class="lab-head">
-        Line {side.line}, {side.side} side
+        Line {numberOf(side.line)}, {side.side} side
         <span class="muted" data-testid="plane-probability">
           {" "}
           · P(plane) {side.curve.posterior.plane.toFixed(2)}
@@ -127,7 +128,7 @@ function SimChart({ frame, figure, side }: OfSide & { frame: Frame }) {
       onDrag={(value) => figure.act.turnTo(Math.round(2 * value) * 0.5 * DEGREE)}
     >
       <path class="posterior" data-testid="posterior" d={closedPathOf([...inside, ...ends])}>
-        <title>Posterior over θ (B99 5), as high as the probability that a plane is there</title>
+        <title>Posterior over θ, as high as the probability that a plane is there</title>
       </path>
       {typeof least === "number" && <line class="threshold" {...level(least)} />}
       {views.map((view, i) => (

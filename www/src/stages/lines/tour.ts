@@ -2,7 +2,7 @@
 import { results } from "../../app/state/results";
 import { beforeGrowing, selection, showBeforeGrowing } from "../../app/state/viewState";
 import { lengthOf, lineAt, STRETCH_STRIDE } from "../../shared/flatArrays";
-import { pickedIndex } from "../../shared/selection";
+import { numberOf, pickedIndex } from "../../shared/selection";
 import type { Results } from "../list";
 import { ofPicked, type StageStep } from "../tourStep";
 
@@ -15,11 +15,11 @@ export default [
     question: `Switch between Before growing and After, and pick a line that became at least ${GREW_M} m longer.`,
     ...ofPicked(pickedLine, {
       answer: ({ line, before, after }) =>
-        `Line ${line} showed ${before.toFixed(1)} m in one piece before, and is ${after.toFixed(1)} m long now.`,
+        `Line ${numberOf(line)} showed ${before.toFixed(1)} m in one piece before, and is ${after.toFixed(1)} m long now.`,
       hint: ({ line, before, after }) =>
         beforeGrowing.value
           ? "This is before growing."
-          : `Line ${line} is ${after.toFixed(1)} m long, ${before.toFixed(1)} m before: look for one that gained more.`,
+          : `Line ${numberOf(line)} is ${after.toFixed(1)} m long, ${before.toFixed(1)} m before: look for one that gained more.`,
       isFound: ({ before, after }) => !beforeGrowing.value && before > 0 && after - before >= GREW_M,
     }),
     pointsTo: "growing",

@@ -1,4 +1,5 @@
 /** B99 figures 2 to 4: the candidates of a segment, pointwise correspondence, and the two windows that are compared. */
+import { numberOf } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { counted } from "../../app/parts/counted";
 import { outcomeWords } from "../../app/parts/reasonText";
@@ -38,7 +39,7 @@ export function PointLab({ figure }: { figure: Figure }) {
                 <tr key={`${one.view}.${one.segment}`} aria-selected={i === candidate}>
                   <td>
                     <button type="button" class="link" onClick={() => compareAt(i, at)}>
-                      {viewName(figure, one.view)} · {one.segment}
+                      {viewName(figure, one.view)} · {numberOf(one.segment)}
                     </button>
                   </td>
                   <td class="numbers">
@@ -51,7 +52,7 @@ export function PointLab({ figure }: { figure: Figure }) {
                   </td>
                   <td class="numbers">
                     {counted(one.predictions.filter(({ verified }) => verified !== null).length, "views")}
-                    {one.line !== null && ` · match ${one.line}`}
+                    {one.line !== null && ` · match ${numberOf(one.line)}`}
                   </td>
                 </tr>
               ))}

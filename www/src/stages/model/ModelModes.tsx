@@ -10,6 +10,7 @@ import { selection } from "../../app/state/viewState";
 import { facetOf } from "../../kinds/kinds";
 import { METHOD_COLOURS } from "../../shared/palette";
 import { densePlanesOf, type Facet, rectanglesOf } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import { METHODS, type Method } from "../../shared/stages";
 import type { ModelMode } from "../../viewer/layers/model";
 import { METHOD_WORDS } from "../catalogue";
@@ -147,8 +148,8 @@ function SunLegend() {
       <p>
         Direct sun a day, mean of the year: shaded by this model alone, without clouds, trees and hills.
         {picked === undefined
-          ? " Select a face for its months."
-          : ` Face ${picked.facet}: ${(picked.hours_a_year / 365).toFixed(1)} h; January to December ${picked.hours_a_day
+          ? " Select a facet for its months."
+          : ` Facet ${numberOf(picked.facet)}: ${(picked.hours_a_year / 365).toFixed(1)} h; January to December ${picked.hours_a_day
               .map((hours) => hours.toFixed(1))
               .join(", ")} h.`}
       </p>

@@ -1,4 +1,5 @@
 /** W96 3.6: the window of a plane between parallel lines, and the histogram of positions (figures 10 and 11). */
+import { numberOf } from "../../shared/selection";
 import "../../app/view/figures/figures.css";
 import { ListChoice } from "../../app/parts/Choice";
 import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../../app/parts/charts";
@@ -25,7 +26,7 @@ export function RectangleLab({ figure }: { figure: Figure }) {
         title="Pair of lines"
         names={found.pairs.map(({ lines, rejection }, i) => {
           const outcome = rejection === null ? "candidate" : PAIR_WORDS[rejection];
-          return `${lines.join(" and ")} · ${isChosen(i) ? "selected" : outcome}`;
+          return `${lines.map(numberOf).join(" and ")} · ${isChosen(i) ? "selected" : outcome}`;
         })}
         shown={shown}
         onShow={(index) => figure.act.select({ kind: "pair", index })}

@@ -8,7 +8,7 @@ import { SplitLab } from "../../app/view/figures/SplitLab";
 import { buildingOfFacet, relationLimit } from "../../kinds/parts/refinedBuildings";
 import { clamp } from "../../shared/linear";
 import type { BuildingRefinement, TestedRelation } from "../../shared/records";
-import { pickedIndex } from "../../shared/selection";
+import { numberOf, pickedIndex } from "../../shared/selection";
 import type { Figure } from "../figure";
 
 const KINDS = ["horizontal", "parallel", "perpendicular", "equal_height", "symmetric"] as const;
@@ -29,7 +29,7 @@ export function RefinementLab({ figure }: { figure: Figure }) {
     <SplitLab figure={figure} testid="refinement-lab">
       <ListChoice
         title="Building"
-        names={buildings.map((one, i) => `${i} · ${refinementWords(one)}`)}
+        names={buildings.map((one, i) => `${numberOf(i)} · ${refinementWords(one)}`)}
         shown={building}
         onShow={(index) => figure.act.select({ kind: "refinement", index })}
       />

@@ -1,7 +1,9 @@
 /** The tour: straight edges. */
+
 import { results } from "../../app/state/results";
 import { selection } from "../../app/state/viewState";
 import { lengthOf, segmentAt } from "../../shared/flatArrays";
+import { numberOf } from "../../shared/selection";
 import type { Results } from "../list";
 import { ofPicked, type StageStep } from "../tourStep";
 
@@ -14,11 +16,11 @@ export default [
     question: `Pick a segment at the edge of a roof, longer than ${LONG_PX} pixels.`,
     ...ofPicked(pickedSegment, {
       answer: ({ length, facet }) =>
-        `${length.toFixed(0)} px, at a side of facet ${facet} of the finished model. One photograph alone cannot tell it from a kerb: that takes the other views.`,
+        `${length.toFixed(0)} px, at a side of facet ${numberOf(facet ?? 0)} of the finished model. One photograph alone cannot tell it from a kerb: that takes the other views.`,
       hint: ({ length, facet }) =>
         facet === null
           ? `${length.toFixed(0)} px long, but no facet of the model has it as a side: kerbs, paths and shadows are straight, too.`
-          : `It is at a side of facet ${facet}, but ${length.toFixed(0)} px long: look for a longer one.`,
+          : `It is at a side of facet ${numberOf(facet)}, but ${length.toFixed(0)} px long: look for a longer one.`,
       isFound: ({ length, facet }) => facet !== null && length > LONG_PX,
     }),
   },

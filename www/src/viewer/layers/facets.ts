@@ -1,4 +1,5 @@
 /** Roof facets, tinted by their normal: the hue says where a facet faces, the saturation how steep it is. */
+
 import {
   BufferGeometry,
   Color,
@@ -13,6 +14,7 @@ import {
 import { edgesOf } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import type { Facet, Vec3 } from "../../shared/records";
+import { numberOf } from "../../shared/selection";
 import { opacityOf } from "../scene/certainty";
 import { middleOf } from "../scene/facetPlan";
 import { BEHIND_LINES, colouredMesh, type Layer } from "../scene/layer";
@@ -31,7 +33,7 @@ export function buildFacets(facets: readonly Facet[], areNamed = true): Layer {
   );
   const opacities = facets.map(({ probability }) => opacityOf(probability));
   const drawn = facetMesh(triangles, facets.map(normalTint), opacities);
-  const names = facets.map(({ outer }, i) => ({ text: String(i), at: middleOf(outer) }));
+  const names = facets.map(({ outer }, i) => ({ text: String(numberOf(i)), at: middleOf(outer) }));
   return partsLayer({
     kind: "facet",
     parts: [{ drawn, opacity: [OPACITY, DIMMED], things: facetOfTriangle }],

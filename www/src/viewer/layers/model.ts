@@ -18,7 +18,7 @@ import {
 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PALETTE, type ThemeColours } from "../../shared/palette";
-import type { Selection } from "../../shared/selection";
+import { indexOf, type Selection } from "../../shared/selection";
 import { BEHIND_LINES, disposeObject, type Layer, SelectedObject, trianglesOf } from "../scene/layer";
 import { normalTint } from "./facets";
 
@@ -68,7 +68,7 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
   const painted = new Map<string, Material>();
   let facetColours: readonly string[] = [];
   const paintOf = (mesh: Mesh) => {
-    const colour = facetColours[numberOrNull(extra(mesh, "facet")) ?? -1];
+    const colour = facetColours[indexIn(mesh, "facet") ?? -1];
     if (colour === undefined) {
       return plain;
     }
@@ -150,20 +150,20 @@ function describeHit(hit: Intersection): Selection | null {
   return {
     kind: "surface",
     surface: String(extra(mesh, "surface") ?? "face"),
-    building: numberOrNull(extra(mesh, "building")),
-    facet: numberOrNull(extra(mesh, "facet")),
+    building: indexIn(mesh, "building"),
+    facet: indexIn(mesh, "facet"),
     areaM2: areaOf(mesh.geometry),
   };
 }
 
 function matches(mesh: Mesh, selection: Selection | null): boolean {
   if (selection?.kind === "facet") {
-    return numberOrNull(extra(mesh, "facet")) === selection.index;
+    return indexIn(mesh, "facet") === selection.index;
   }
   return (
     selection?.kind === "surface" &&
-    numberOrNull(extra(mesh, "building")) === selection.building &&
-    numberOrNull(extra(mesh, "facet")) === selection.facet &&
+    indexIn(mesh, "building") === selection.building &&
+    indexIn(mesh, "facet") === selection.facet &&
     String(extra(mesh, "surface") ?? "face") === selection.surface &&
     Math.abs(areaOf(mesh.geometry) - selection.areaM2) < 1e-9
   );
@@ -179,8 +179,10 @@ function extra(object: Object3D, name: string): unknown {
   return undefined;
 }
 
-function numberOrNull(value: unknown): number | null {
-  return typeof value === "number" ? value : null;
+/** The index of a mesh's building or facet, whose number the export wrote; null where it has none. */
+function indexIn(mesh: Mesh, name: string): number | null {
+  const number = extra(mesh, name);
+  return typeof number === "number" ? indexOf(number) : null;
 }
 
 function areaOf(geometry: BufferGeometry): number {

@@ -185,7 +185,7 @@ describe("the graph over an image", () => {
 describe("a corner in space", () => {
   it("is told with its nats, its neighbours and its planes", () => {
     show();
-    expect(titleOf({ kind: "corner", index: 0 }, about(results.value))).toBe("Corner 0");
+    expect(titleOf({ kind: "corner", index: 0 }, about(results.value))).toBe("Corner 1");
     const rows = rowsOf({ kind: "corner", index: 0 }, about(results.value));
     expect(valueIn(rows, "Seen in")).toBe("3 views");
     expect(barsIn(rows, "For and against it (nats)")).toEqual([9, 10, -1]);

@@ -65,10 +65,10 @@ describe("cluster planes", () => {
     const planes = [0.5, 0.5 + right, 1, 1 + right].map((azimuth) => ({ azimuth }));
     const windows = [0.5, 1].map((azimuth) => ({ directions: [{ azimuth, share: 1 }] }));
     expect(planeNames(planes, { windows } as never)).toEqual([
-      "Building 0, along 29°",
-      "Building 0, along 119°",
-      "Building 1, along 57°",
-      "Building 1, along 147°",
+      "Building 1, along 29°",
+      "Building 1, along 119°",
+      "Building 2, along 57°",
+      "Building 2, along 147°",
     ]);
     expect(planeNames(planes.slice(0, 1), null)).toEqual(["Lines along 29°"]);
   });

@@ -98,7 +98,7 @@ const barsIn = (rows: readonly Row[], label: string) => {
 describe("sets of coplanar lines", () => {
   it("are told with their nats and what became of them", () => {
     show();
-    expect(titleOf({ kind: "coplanar", index: 0 }, about(results.value))).toBe("Coplanar set 0");
+    expect(titleOf({ kind: "coplanar", index: 0 }, about(results.value))).toBe("Coplanar set 1");
     const rows = rowsOf({ kind: "coplanar", index: 0 }, about(results.value));
     expect(valueIn(rows, "Verified")).toBe("yes");
     expect(barsIn(rows, "For and against it (nats)")).toEqual([4, 30, -12]);

@@ -131,7 +131,7 @@ describe("the inspector", () => {
   it("says of a dense plane what it is, how sure its place is, and what it proposed", () => {
     show();
     const rows = rowsOf({ kind: "dense", index: 0 }, about(results.value));
-    expect(titleOf({ kind: "dense", index: 0 }, about(results.value))).toBe("Dense plane 0");
+    expect(titleOf({ kind: "dense", index: 0 }, about(results.value))).toBe("Dense plane 1");
     expect(valueIn(rows, "It is")).toBe("building 97 %, ground 2 %, vegetation 1 %");
     expect(valueIn(rows, "σ of its height")).toBe("2.0 cm");
     expect(valueIn(rows, "RMS of its patches")).toBe("3.4 cm");

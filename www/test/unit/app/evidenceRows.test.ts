@@ -130,7 +130,9 @@ it("a place that may be roof and has no facet says why, and how likely it is", (
     ],
   });
   const rowsOfRoof = (index: number) => rowsOf({ kind: "uncoveredRoof", index }, about(results.value));
-  expect(valueIn(rowsOfRoof(0), "No facet, because")).toBe("rejected facet 3 is improbable");
+  expect(valueIn(rowsOfRoof(0), "Rejected as improbable")).toEqual([
+    { name: "4", selection: { kind: "rejectedFacet", index: 3 } },
+  ]);
   expect((valueIn(rowsOfRoof(0), "For and against it (nats)") as Bars).bars).toHaveLength(4);
   expect(valueIn(rowsOfRoof(1), "No facet, because")).toBe("no plane won the place");
   expect(valueIn(rowsOfRoof(1), "Probability of a roof")).toBe("62 %");

@@ -1,7 +1,7 @@
 /** What figures say of themselves outside of the page: their state in links, their papers, their numbers. */
 import { describe, expect, it } from "vitest";
 import { citationOf } from "../../../src/app/results/takeAlong/citation";
-import { csvOf } from "../../../src/app/results/takeAlong/rows";
+import { csvOf, numbered } from "../../../src/app/results/takeAlong/rows";
 import {
   addressOf,
   FIRST_STATE,
@@ -103,6 +103,12 @@ describe("the numbers behind a figure", () => {
       { name: "d", value: null, more: true },
     ];
     expect(csvOf(rows)).toBe('name,value,more\r\n"a ""b"", c",0.5,\r\nd,,true\r\n');
+  });
+
+  it("name things by numbers that count from 1, as the page and the files do", () => {
+    expect(numbered([{ facet: 0, corner: 3, corners: 4, view: "a.jpg", match: null }])).toEqual([
+      { facet: 1, corner: 4, corners: 4, view: "a.jpg", match: null },
+    ]);
   });
 
   it("are none where nothing was found", () => {

@@ -62,7 +62,7 @@ function Footprints({ found }: { found: RegisterTrace }) {
             <dd>
               <Links
                 to={indices.map((index) => ({
-                  name: found.footprints[index]?.name ?? String(index),
+                  name: found.footprints[index]?.name ?? "",
                   selection: { kind: "footprint", index },
                 }))}
               />

@@ -6,7 +6,7 @@ import { facetOf } from "../../../kinds/kinds";
 import { obstructionText } from "../../../kinds/parts/obstructionText";
 import { add, edgesOf } from "../../../shared/linear";
 import type { Correction, Facet, NotApplied, Vec3 } from "../../../shared/records";
-import { pickedIndex } from "../../../shared/selection";
+import { numberOf, pickedIndex } from "../../../shared/selection";
 import { counted } from "../../parts/counted";
 import { degreesOf, slopeOf } from "../../parts/numberText";
 import { saveFile } from "../../parts/saveFile";
@@ -195,7 +195,7 @@ function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
   return (
     <fieldset disabled={isBusy.value}>
       <legend>
-        Facet {index}, probability {facet.probability.toFixed(2)}
+        Facet {numberOf(index)}, probability {facet.probability.toFixed(2)}
       </legend>
       <div class="row wrap">
         <Deeds all={deeds} />

@@ -5,7 +5,7 @@ import { saveFile } from "../../parts/saveFile";
 import type { FigureText } from "../../view/figures/AboutFigure";
 import { citationOf } from "./citation";
 import { pngOf, svgOf } from "./pictures";
-import { csvOf, type Row } from "./rows";
+import { csvOf, numbered, type Row } from "./rows";
 
 interface Props {
   of: FigureText;
@@ -39,7 +39,7 @@ export function TakeAlong({ of, name, rows, body, link }: Props) {
       save("png", "image/png", await pngOf(drawn));
     }
   };
-  const data = () => JSON.stringify({ figure: name, link: link(), rows: rows() }, null, 1);
+  const data = () => JSON.stringify({ figure: name, link: link(), rows: numbered(rows()) }, null, 1);
   return (
     <details class="take">
       <summary>Take along</summary>
@@ -50,7 +50,7 @@ export function TakeAlong({ of, name, rows, body, link }: Props) {
         <button type="button" onClick={() => void savePng()}>
           PNG
         </button>
-        <button type="button" onClick={() => save("csv", "text/csv", csvOf(rows()))}>
+        <button type="button" onClick={() => save("csv", "text/csv", csvOf(numbered(rows())))}>
           CSV
         </button>
         <button type="button" onClick={() => save("json", "application/json", data())}>

@@ -13,14 +13,14 @@ const GROUPS: readonly (readonly [title: string, files: Files])[] = [
     {
       "roof_report.html": "roofs in numbers and drawings, for print",
       "buildings.csv": "buildings as a table",
-      "facets.csv": "roof faces as a table",
+      "facets.csv": "roof facets as a table",
       "edges.csv": "roof edges as a table",
       "roofs.json": "all of it for programs, with usable areas",
     },
   ],
   [
     "CAD",
-    { "model.ifc": "IFC4: roofs, their faces, walls, areas", "model.dxf": "3DFACE and LINE, AutoCAD R12" },
+    { "model.ifc": "IFC4: roofs, their facets, walls, areas", "model.dxf": "3DFACE and LINE, AutoCAD R12" },
   ],
   [
     "GIS",
@@ -28,7 +28,7 @@ const GROUPS: readonly (readonly [title: string, files: Files])[] = [
       "model.city.json": "CityJSON 2.0, LoD 2.2 and 2.3",
       "model.city.jsonl": "the same as CityJSONSeq, a building a line",
       "footprints.geojson": "outlines on the ground",
-      "facets.geojson": "roof faces in plan: areas, slopes, directions",
+      "facets.geojson": "roof facets in plan: areas, slopes, directions",
       "edges.geojson": "ridges, hips, valleys, eaves, rakes",
       "obstructions.geojson": "what stands on the roofs, with heights",
     },
@@ -49,7 +49,7 @@ const GROUPS: readonly (readonly [title: string, files: Files])[] = [
     {
       "lines.json": "3D lines and their views",
       "lines.csv": "3D lines as a table",
-      "halfplanes.json": "half-planes and Sim(theta)",
+      "halfplanes.json": "half-planes and Sim(θ)",
       "segments.json": "image segments",
       "evidence.json": "what speaks for each line and facet",
       "report.json": "counts, parameters, warnings",

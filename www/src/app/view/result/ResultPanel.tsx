@@ -1,6 +1,7 @@
 /** Beside the model: its buildings, or of what is selected the numbers, or corrections. */
 import "./result.css";
 import { facetOf } from "../../../kinds/kinds";
+import { numberOf } from "../../../shared/selection";
 import { Inspector } from "../../inspector/Inspector";
 import { counted } from "../../parts/counted";
 import { ModelComparison } from "../../results/comparison/ModelComparison";
@@ -38,15 +39,10 @@ function Buildings() {
       <h2>
         {counted(all.length, "buildings")}{" "}
         <span class="muted numbers">
-          {counted(facets.length, "faces")}, {area.toFixed(0)} m²
+          {counted(facets.length, "roof facets")}, {area.toFixed(0)} m²
         </span>
       </h2>
       {all.length === 0 && <p class="muted">No building was found in these photographs.</p>}
-      {all.length > 0 && (
-        <p class="muted">
-          Numbers begin with 0, and are the same in the report and in all files, where a face is called facet.
-        </p>
-      )}
       <ul class="buildings">
         {all.map((building) => (
           <BuildingRow key={building.number} building={building} />
@@ -72,10 +68,10 @@ function BuildingRow({ building }: { building: Building }) {
       <button type="button" class="building" aria-expanded={isOpen} onClick={go(faces[0])}>
         <b>Building {number}</b>
         <span class="numbers">{area.toFixed(1)} m²</span>
-        <span class="muted numbers">{counted(faces.length, "faces")}</span>
-        <span class={doubtful > 0 ? "doubtful numbers" : "muted numbers"} title="Of its least probable face">
+        <span class="muted numbers">{counted(faces.length, "roof facets")}</span>
+        <span class={doubtful > 0 ? "doubtful numbers" : "muted numbers"} title="Of its least probable facet">
           {doubtful > 0 && `${doubtful} doubtful, `}
-          {Math.round(100 * probability)} %
+          {Math.round(100 * probability)}&nbsp;%
         </span>
       </button>
       {isOpen && (
@@ -83,7 +79,7 @@ function BuildingRow({ building }: { building: Building }) {
           {faces.map((face) => (
             <li key={face.index}>
               <button type="button" aria-pressed={face.index === picked} onClick={go(face)}>
-                <span>Face {face.index}</span>
+                <span>Facet {numberOf(face.index)}</span>
                 <span class="numbers">{face.area.toFixed(1)} m²</span>
                 <span class="numbers">{face.slopeDeg.toFixed(0)}°</span>
                 <span class={face.isDoubtful ? "doubtful numbers" : "muted numbers"}>

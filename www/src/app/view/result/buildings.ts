@@ -1,11 +1,12 @@
 /** The buildings of the model, as they are listed, with the numbers that they have in the report and in the files. */
 import type { Facet, Vec3 } from "../../../shared/records";
+import { numberOf } from "../../../shared/selection";
 import { slopedArea } from "../../../shared/surfaceClass";
 import { degreesOf, slopeOf } from "../../parts/numberText";
 import { doubtfulFacets } from "../../results/corrections/doubtful";
 
 export interface RoofFace {
-  /** Among the facets of the model, from 0. */
+  /** Among the facets of the model. */
   index: number;
   /** Along the slope, square metres. */
   area: number;
@@ -19,7 +20,7 @@ export interface Building {
   number: number;
   faces: RoofFace[];
   area: number;
-  /** Of its least probable face. */
+  /** Of its least probable facet. */
   probability: number;
   doubtful: number;
 }
@@ -37,7 +38,7 @@ export function buildings(facets: readonly Facet[]): Building[] {
   return [...byNumber]
     .sort(([a], [b]) => a - b)
     .map(([building, faces]) => ({
-      number: building,
+      number: numberOf(building),
       faces,
       area: faces.reduce((sum, { area }) => sum + area, 0),
       probability: Math.min(...faces.map(({ probability }) => probability)),
