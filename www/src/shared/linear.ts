@@ -135,6 +135,13 @@ export function nearestOf<T>(all: readonly T[], distance: (one: T) => number, re
   return near.sort((a, b) => a.at - b.at)[0]?.one ?? null;
 }
 
+/** The frame of an angle about a line (B99 4.1): level and away to the left of it, seen from above, and upwards across both. */
+export function thetaFrame(p: Vector, q: Vector): { along: Vec3; left: Vec3; up: Vec3 } {
+  const along = unit(sub(q as unknown as Vec3, p));
+  const left = unit<Vec3>([-along[1], along[0], 0]);
+  return { along, left, up: cross(along, left) };
+}
+
 /** The parameter at which a curve comes nearest to a point, to a 400th of its range. */
 export function nearestParameter(curve: (t: number) => Vec2, from: number, to: number, at: Vec2): number {
   let best = { t: from, by: Number.POSITIVE_INFINITY };

@@ -1,5 +1,5 @@
 /** Which two views know a line best: B99 3.4 and figure 9, by the covariance of the line in space. */
-import { add, cross, DEGREE, distance2, dot, norm, sub, unit } from "../../shared/linear";
+import { add, DEGREE, distance2, dot, norm, sub, thetaFrame, unit } from "../../shared/linear";
 import type { ViewInfo } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
 import { figureExercise, type Outcome } from "./judgeFigure";
@@ -14,9 +14,7 @@ const MOST_VIEWS = 4;
 
 /** How far the image of a line moves across itself, pixels per metre, when the line moves along two directions across it. */
 function sensitivity(view: ViewInfo, [p, q]: readonly [Point, Point]): readonly [number, number] {
-  const along = unit(sub(q, p));
-  const left = unit([-along[1], along[0], 0] as const);
-  const up = cross(along, left);
+  const { left, up } = thetaFrame(p, q);
   const [a, b] = [imageIn(view, p), imageIn(view, q)];
   const length = distance2(a, b);
   const across = [-(b[1] - a[1]) / length, (b[0] - a[0]) / length] as const;

@@ -13,8 +13,7 @@ import {
   mix3,
   nearestOf,
   scaled,
-  sub,
-  unit,
+  thetaFrame,
 } from "../../shared/linear";
 import type { Side, ViewInfo } from "../../shared/records";
 import type { Figure } from "../../stages/figure";
@@ -143,16 +142,13 @@ export function faceBeside(
   side: Side,
 ): { face: RoofFace; theta: number } | null {
   const [p, q] = line;
-  const along = unit(sub(q, p));
-  const left = unit([-along[1], along[0], 0] as const);
+  const { along, left, up } = thetaFrame(p, q);
   const outward = scaled(left, side === "left" ? 1 : -1);
   const [x, y] = add(mix3(p, q, 0.5), outward, 0.6);
   const face = faceOver([x, y]);
   if (face === null) {
     return null;
   }
-  const upward = cross(along, outward);
-  const up = scaled(upward, upward[2] < 0 ? -1 : 1);
   const [a, b, c] = face.plane;
   const across = cross([a, b, c], along);
   const sign = dot(across, outward) < 0 ? -1 : 1;

@@ -1,5 +1,5 @@
 /** The angle of a half-plane about its line: theta of B99 4.1. */
-import { add, cross, DEGREE, dot, scaled, sub, unit } from "../../shared/linear";
+import { add, cross, DEGREE, dot, scaled, thetaFrame, unit } from "../../shared/linear";
 import { functionExercise, numberProblem } from "../judging/judge";
 import type { Vector } from "../judging/linear";
 import { between, plantedPoint } from "../judging/random";
@@ -8,12 +8,10 @@ type Input = readonly [p: Vector, q: Vector, n: Vector];
 
 /** The angle, radians, of the plane that rises to the left of p to q. */
 function angle(p: Vector, q: Vector, n: Vector): number {
-  const along = unit(sub(q, p));
-  const outward = unit(cross([0, 0, 1], along));
-  const up = cross(along, outward);
+  const { along, left, up } = thetaFrame(p, q);
   const level = cross(n, along);
-  const away = dot(level, outward) < 0 ? scaled(level, -1) : level;
-  return Math.atan2(dot(away, up), dot(away, outward));
+  const away = dot(level, left) < 0 ? scaled(level, -1) : level;
+  return Math.atan2(dot(away, up), dot(away, left));
 }
 
 /** The steepest slope of a plane, radians. */
@@ -52,9 +50,8 @@ function angleOfPlane(p, q, n) {
     const along = [Math.cos(azimuth) * Math.cos(rise), Math.sin(azimuth) * Math.cos(rise), Math.sin(rise)];
     const q = add(p, along, 8);
     const planted = between(random, 0.15, 1) * (random() < 0.5 ? -1 : 1);
-    const outward = unit(cross([0, 0, 1], along));
-    const up = cross(along, outward);
-    const away = add(scaled(outward, Math.cos(planted)), up, Math.sin(planted));
+    const { left, up } = thetaFrame(p, q);
+    const away = add(scaled(left, Math.cos(planted)), up, Math.sin(planted));
     const normal = unit(cross(along, away));
     const n = normal[2] < 0 ? scaled(normal, -1) : normal;
     return { input: [p, q, n], error: (answer) => Math.abs(answer - planted / DEGREE) };

@@ -1,9 +1,10 @@
 /** Half-planes as fans: a strip from the 3D line into the half-plane, fading away from the line. */
 import { BufferGeometry, LineBasicMaterial, LineSegments, Vector3 } from "three";
 import { LINE_STRIDE, lineAt } from "../../shared/flatArrays";
+import { add, scaled, thetaFrame } from "../../shared/linear";
 import { PALETTE } from "../../shared/palette";
 import { type HalfPlane, isRejected, type Side, type SideRecord, type Vec3 } from "../../shared/records";
-import { fanRing, fanWidth } from "../../viewer/scene/fanRing";
+import { fanRing, ringFrom } from "../../viewer/scene/fanRing";
 import { zUpGroup } from "../../viewer/scene/frame";
 import { colouredMesh, type Layer, layerOf, quads, rgb } from "../../viewer/scene/layer";
 import { partsLayer } from "../../viewer/scene/partsLayer";
@@ -54,18 +55,10 @@ export function buildFans(
 /** The half-plane that is being turned by hand: one fan at `theta` (radians) about the line from `p0` to `p1`. */
 export function buildTurning(ends: readonly [Vec3, Vec3], side: Side, theta: number): Layer {
   const object = zUpGroup();
-  const [p0, p1] = ends.map((end) => new Vector3(...end)) as [Vector3, Vector3];
-  const direction = p1.clone().sub(p0);
-  const width = fanWidth(direction.length());
-  direction.normalize();
-  // The frame of theta, as the core states it: horizontal and away from the line, and upwards across both.
-  const outward = new Vector3(-direction.y, direction.x, 0)
-    .normalize()
-    .multiplyScalar(side === "left" ? 1 : -1);
-  const up = direction.clone().cross(outward);
-  up.multiplyScalar(up.z < 0 ? -1 : 1);
-  const away = outward.multiplyScalar(width * Math.cos(theta)).addScaledVector(up, width * Math.sin(theta));
-  object.add(fanMesh([[p0, p1, p1.clone().add(away), p0.clone().add(away)]], PALETTE.selected, 3));
+  const { left, up } = thetaFrame(...ends);
+  const outward = scaled(left, side === "left" ? Math.cos(theta) : -Math.cos(theta));
+  const ring = ringFrom(ends, add(outward, up, Math.sin(theta)));
+  object.add(fanMesh([ring.map((corner) => new Vector3(...corner))], PALETTE.selected, 3));
   return layerOf(object);
 }
 

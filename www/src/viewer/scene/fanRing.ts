@@ -1,6 +1,6 @@
 /** A half-plane as a strip from its line, for the eye only: it has no width of its own. */
 import { lineAt } from "../../shared/flatArrays";
-import { add, cross, norm, scaled, sub, unit } from "../../shared/linear";
+import { add, clamp, cross, norm, scaled, sub, unit } from "../../shared/linear";
 import type { HalfPlane, Vec3 } from "../../shared/records";
 
 /** Width of a fan over the length of its line, and its limits in metres. */
@@ -12,16 +12,15 @@ const NO_LINE: readonly [Vec3, Vec3] = [
   [0, 0, 0],
 ];
 
-export function fanWidth(lengthM: number): number {
-  return Math.min(WIDTH_M.max, Math.max(WIDTH_M.min, lengthM * RELATIVE_WIDTH));
-}
-
 /** Start and end on the line, then end and start away from it; local frame, metres. */
 export function fanRing(halfPlane: HalfPlane, lines: Float64Array): [Vec3, Vec3, Vec3, Vec3] {
-  const [p0, p1] = lineAt(lines, halfPlane.line) ?? NO_LINE;
-  const along = sub(p1, p0);
-  const away = awayFromLine(halfPlane, unit(along));
-  const width = fanWidth(norm(along));
+  const ends = lineAt(lines, halfPlane.line) ?? NO_LINE;
+  return ringFrom(ends, awayFromLine(halfPlane, unit(sub(ends[1], ends[0]))));
+}
+
+/** The same of a line and a unit vector away from it. */
+export function ringFrom([p0, p1]: readonly [Vec3, Vec3], away: Vec3): [Vec3, Vec3, Vec3, Vec3] {
+  const width = clamp(norm(sub(p1, p0)) * RELATIVE_WIDTH, WIDTH_M.min, WIDTH_M.max);
   return [p0, p1, add(p1, away, width), add(p0, away, width)];
 }
 
