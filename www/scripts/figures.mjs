@@ -61,7 +61,7 @@ const B99 = [
     name: "before",
     figures: "5 and 7",
     shows: "3D lines before merging and growing",
-    steps: [tab("3D lines"), button("Before growing")],
+    steps: [link("tab=lines", "lines"), button("Before growing")],
   },
   {
     name: "lines",

@@ -192,12 +192,12 @@ describe("a corner in space", () => {
     expect(planesOfCorner(0, { adjacency: ADJACENCY })).toEqual([0, 1, 2]);
     expect(barsIn(rows, "Views agree inside (nats)")).toEqual([6, 8]);
     const names = (label: string) => (valueIn(rows, label) as Related[]).map(({ name }) => name);
-    expect(names("Joined by an edge")).toEqual(["1"]);
-    expect(names("Facets")).toEqual(["0"]);
+    expect(names("Joined by an edge")).toEqual(["2"]);
+    expect(names("Facets")).toEqual(["1"]);
     expect(rowsOf({ kind: "corner", index: 9 }, about(results.value))).toEqual([]);
     expect(
       valueIn(rowsOf({ kind: "facet", index: 0 }, about(results.value)), "Proposed by corners"),
-    ).toMatchObject([{ name: "0" }, { name: "1" }]);
+    ).toMatchObject([{ name: "1" }, { name: "2" }]);
     expect(siblingsOf({ kind: "corner", index: 0 }, "adjacency", about(results.value))).toHaveLength(2);
   });
 

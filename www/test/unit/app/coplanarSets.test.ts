@@ -104,12 +104,12 @@ describe("sets of coplanar lines", () => {
     expect(barsIn(rows, "For and against it (nats)")).toEqual([4, 30, -12]);
     expect(barsIn(rows, "Sides without a line (nats)")).toEqual([1.5]);
     const names = (label: string) => (valueIn(rows, label) as Related[]).map(({ name }) => name);
-    expect(names("3D lines")).toEqual(["3", "4"]);
-    expect(names("Facets")).toEqual(["0"]);
+    expect(names("3D lines")).toEqual(["4", "5"]);
+    expect(names("Facets")).toEqual(["1"]);
     expect(valueIn(rowsOf({ kind: "coplanar", index: 1 }, about(results.value)), "Verified")).toBe("no");
     expect(rowsOf({ kind: "coplanar", index: 9 }, about(results.value))).toEqual([]);
     expect(valueIn(rowsOf({ kind: "facet", index: 0 }, about(results.value)), "Coplanar sets")).toMatchObject(
-      [{ name: "0" }],
+      [{ name: "1" }],
     );
   });
 
