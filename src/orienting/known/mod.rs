@@ -39,6 +39,7 @@ pub use comparison::{KnownComparison, KnownShift, KnownThing, KnownVerdict};
 pub(crate) use comparison::{belongs_here, best_shift};
 pub use footprint::Footprint;
 pub use height_grid::HeightGrid;
+pub use holes::TERRAIN_ACCURACY_M;
 pub(crate) use json_lines::json_of;
 use system::StatedSystem;
 pub use system::WorldSystem;
@@ -98,10 +99,6 @@ pub struct Register {
     /// Standard deviation of its borders, metres.
     pub accuracy_m: f64,
 }
-
-/// Standard deviation of the heights of a terrain model where none is stated, metres. Assumption:
-/// surveys promise 0.15 to 0.3 m for models from airborne laser scanning.
-pub const TERRAIN_ACCURACY_M: f64 = 0.3;
 
 /// Standard deviation of the borders of a register where none is stated, metres. Assumption: half
 /// of that is promised of cadastral surveys, twice of what is digitised from photographs.
