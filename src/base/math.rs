@@ -27,7 +27,7 @@ pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
 
 /// Deviations of so many standard deviations are none of chance, of how many quantities ever they
 /// are the largest. Assumption.
-pub(crate) const SURE_SIGMAS: f64 = 4.0;
+pub(crate) const SURE_RESIDUAL_SIGMAS: f64 = 4.0;
 
 /// Median length of a vector of two normal components, in their standard deviation (Rayleigh).
 pub(crate) const RAYLEIGH_MEDIAN: f64 = 1.177_41;

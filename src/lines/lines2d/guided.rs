@@ -19,7 +19,7 @@ use super::segment::SegmentKind;
 use crate::base::geometry::Segment2;
 use crate::base::ids::ViewId;
 use crate::base::least_squares::Loss;
-use crate::base::math::SURE_SIGMAS;
+use crate::base::math::SURE_RESIDUAL_SIGMAS;
 use crate::photographs::raster::Gray;
 
 /// Shortest piece whose profile is averaged, px.
@@ -156,7 +156,7 @@ fn measure_piece(
     kind.channel().to_linear_light(&mut light);
     let [response, light] = [profile, light].map(|p| response(&p, reversed_contrast));
     // The difference of two values has the square root of two times their noise.
-    let least = SURE_SIGMAS * noise * std::f64::consts::SQRT_2 / (rows as f64).sqrt();
+    let least = SURE_RESIDUAL_SIGMAS * noise * std::f64::consts::SQRT_2 / (rows as f64).sqrt();
     Some(ProfilePiece {
         along,
         offset: nearest_edge(&response, least).and_then(|k| offset(&light, k)),

@@ -24,7 +24,7 @@ use super::epipolar_check::{EpipolarCheck, mean_axis};
 use super::shift_adjustment::{ResidualScale, ShiftAdjustment};
 use super::subpixel::PointMatch;
 use crate::base::execution::parallel;
-use crate::base::math::SURE_SIGMAS;
+use crate::base::math::SURE_RESIDUAL_SIGMAS;
 use crate::orienting::scene::ViewShift;
 use crate::photographs::camera::Camera;
 
@@ -60,7 +60,7 @@ impl ViewShift {
     pub fn is_significant(&self) -> bool {
         let [x, y] = self.shift_px;
         let length = (x * x + y * y).sqrt();
-        length > MIN_SHIFT_PX.max(SURE_SIGMAS * self.sigma_px)
+        length > MIN_SHIFT_PX.max(SURE_RESIDUAL_SIGMAS * self.sigma_px)
             && length < MAX_SHIFT_PX
             && self.after_px < self.before_px
     }

@@ -10,7 +10,7 @@ use super::resection::{ResectionProblem, resect};
 use super::triangulation::{LEAST_ANGLE, largest_angle, triangulate};
 use super::two_view::{PairKind, TwoViewGeometry};
 use crate::base::execution::{map, reached};
-use crate::base::math::{RAYLEIGH_MEDIAN, SURE_SIGMAS};
+use crate::base::math::{RAYLEIGH_MEDIAN, SURE_RESIDUAL_SIGMAS};
 
 /// A pair whose matches agree with one geometry.
 pub(super) struct VerifiedPair {
@@ -254,7 +254,8 @@ impl Growing<'_> {
             let t = &block.tracks[track];
             match t.point {
                 Some(point) => {
-                    let fits = block.residual(&t.observations[place], &point) <= SURE_SIGMAS;
+                    let fits =
+                        block.residual(&t.observations[place], &point) <= SURE_RESIDUAL_SIGMAS;
                     block.tracks[track].observations[place].is_used = fits;
                 }
                 None => open.push(track),
@@ -298,7 +299,7 @@ pub(super) fn remove_outliers(block: &mut Block) {
     let judged: Vec<Option<Vec<bool>>> = map(&block.tracks, |_, track| {
         let point = track.point?;
         let fits: Vec<bool> = (track.observations.iter())
-            .map(|o| block.residual(o, &point) <= SURE_SIGMAS)
+            .map(|o| block.residual(o, &point) <= SURE_RESIDUAL_SIGMAS)
             .collect();
         let used: Vec<Observation> = (track.observations.iter().zip(&fits))
             .filter(|(_, fits)| **fits)

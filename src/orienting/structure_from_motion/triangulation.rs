@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::block::{Block, Observation, Pose};
-use crate::base::math::{self, SURE_SIGMAS};
+use crate::base::math::{self, SURE_RESIDUAL_SIGMAS};
 
 /// Least angle between two rays of a point, radians.
 pub(super) const LEAST_ANGLE: f64 = 1.5 * std::f64::consts::PI / 180.0;
@@ -65,7 +65,7 @@ pub(super) fn triangulate(
                 let indices: Vec<usize> = agreeing.iter().map(|&k| rays[k].index).collect();
                 let stays = |p: &Point3<f64>| {
                     let mut each = agreeing.iter();
-                    each.all(|&k| block.residual(rays[k].observation, p) <= SURE_SIGMAS)
+                    each.all(|&k| block.residual(rays[k].observation, p) <= SURE_RESIDUAL_SIGMAS)
                 };
                 let point = if stays(&mean) { mean } else { point };
                 let is_complete = agreeing.len() == rays.len();
@@ -84,7 +84,7 @@ fn agreeing(block: &Block, rays: &[Ray], point: &Point3<f64>) -> (Vec<usize>, f6
     let (mut agreeing, mut sum) = (Vec::new(), 0.0);
     for (k, ray) in rays.iter().enumerate() {
         let residual = block.residual(ray.observation, point);
-        if residual <= SURE_SIGMAS {
+        if residual <= SURE_RESIDUAL_SIGMAS {
             agreeing.push(k);
             sum += residual * residual;
         }

@@ -2,7 +2,7 @@
 //! outliers.
 
 use super::normal_equations::LOSS;
-use crate::base::math::SURE_SIGMAS;
+use crate::base::math::SURE_RESIDUAL_SIGMAS;
 use crate::orienting::structure_from_motion::block::Block;
 
 /// Robust sum of squares of all observations in registered photographs, standard deviations a
@@ -14,7 +14,7 @@ pub(in super::super) fn truncated_cost(block: &Block, factor: f64) -> f64 {
         for o in &track.observations {
             if block.photos[o.photo].pose.is_some() {
                 let residual = (track.point).map_or(f64::INFINITY, |p| block.residual(o, &p));
-                let residual = (factor * residual).min(SURE_SIGMAS);
+                let residual = (factor * residual).min(SURE_RESIDUAL_SIGMAS);
                 sum += LOSS.cost(residual * residual);
             }
         }

@@ -10,7 +10,7 @@ use nalgebra::{Point3, Vector3};
 use super::places::{RECEIVER_SIGMA_M, upright_fit};
 use super::stated::{StatedPose, spread};
 use super::vertical::{ByAngles, NEARER_TO_A_WALL, angle_between};
-use crate::base::math::{self, SURE_SIGMAS};
+use crate::base::math::{self, SURE_RESIDUAL_SIGMAS};
 use crate::orienting::orientation::{Anchor, MOST_DATUM_M, geocentric_of};
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::similarity::Similarity;
@@ -137,7 +137,7 @@ fn off_angles(p: &Placement) -> Option<Doubt> {
     let up = p.similarity.rotation.inverse() * Vector3::z();
     let off = angle_between(&up, &angles.up());
     let sigma = math::hypot(angles.sigma(), p.tilt_sigma);
-    (off > SURE_SIGMAS * sigma).then(|| Doubt::OffAngles {
+    (off > SURE_RESIDUAL_SIGMAS * sigma).then(|| Doubt::OffAngles {
         deg: off.to_degrees(),
         photos: angles.photos[0].len(),
     })
@@ -151,7 +151,7 @@ fn other_scale(p: &Placement) -> Option<Doubt> {
         RECEIVER_SIGMA_M.max(found.rms_m[0]) / (found.spread_m * (found.agreeing as f64).sqrt());
     let factor = p.similarity.scale / similarity.scale;
     let off = math::ln(factor).abs();
-    (off > SURE_SIGMAS * sigma).then_some(Doubt::OtherScale { factor })
+    (off > SURE_RESIDUAL_SIGMAS * sigma).then_some(Doubt::OtherScale { factor })
 }
 
 fn elsewhere(p: &Placement) -> Option<Doubt> {

@@ -17,7 +17,7 @@ use super::positions::by_positions;
 use super::stated::StatedPose;
 use super::vertical::AnglesFinding;
 use crate::base::least_squares::Loss;
-use crate::base::math::{self, SURE_SIGMAS};
+use crate::base::math::{self, SURE_RESIDUAL_SIGMAS};
 use crate::orienting::orientation::FrameSigma;
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::similarity::Similarity;
@@ -191,7 +191,7 @@ impl Stated<'_> {
             lag,
             sigma,
             unit: unit.to_owned(),
-            is_applied: lag.abs() > SURE_SIGMAS * sigma,
+            is_applied: lag.abs() > SURE_RESIDUAL_SIGMAS * sigma,
             before_m: self.found.rms_m,
             after_m: self.found.rms_m,
             moved_m: Vec::new(),

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
 use super::stated::{StatedPose, centers, points, spread};
 use crate::base::geometry::{mean_point, rotation_from_axis_angle};
-use crate::base::math::{self, SURE_SIGMAS};
+use crate::base::math::{self, SURE_RESIDUAL_SIGMAS};
 use crate::orienting::orientation::rotation_from_yaw_pitch_roll;
 use crate::orienting::structure_from_motion::block::Block;
 use crate::orienting::structure_from_motion::linear::rotation_between;
@@ -198,7 +198,7 @@ fn agreement(
         .1;
     let scale = math::median(&mut from(middle))?.max(ANGLE_SIGMA);
     // However far they scatter, what is nearer to the horizon than to their middle does not agree.
-    let most = math::smaller(SURE_SIGMAS * scale, math::acos(NEARER_TO_A_WALL));
+    let most = math::smaller(SURE_RESIDUAL_SIGMAS * scale, math::acos(NEARER_TO_A_WALL));
     let agreeing: Vec<usize> = (ups.iter().zip(from(middle)))
         .filter_map(|((i, _), angle)| (angle <= most).then_some(*i))
         .collect();

@@ -7,7 +7,7 @@ use super::marks::{Mark, Marks};
 use super::residual::ControlResidual;
 use crate::base::geometry::mean_point;
 use crate::base::least_squares::{Loss, NormalEquations};
-use crate::base::math::{self, RAYLEIGH_MEDIAN, SIGMA_OVER_MEDIAN, SURE_SIGMAS};
+use crate::base::math::{self, RAYLEIGH_MEDIAN, SIGMA_OVER_MEDIAN, SURE_RESIDUAL_SIGMAS};
 use crate::orienting::orientation::FrameSigma;
 use crate::orienting::structure_from_motion::block::{Block, BlockPhoto, Observation};
 use crate::orienting::structure_from_motion::frame::{centers, spread, tilt_sigma, turn_to_up};
@@ -107,7 +107,7 @@ pub(super) fn fitted(block: &Block, marks: &Marks, control: &GroundControl) -> R
         .map(|u| length(u) / typical_length(u.tie.known))
         .collect();
     let unit = math::median(&mut typical).map_or(1.0, |m| m.max(1.0));
-    let agrees = |u: &&Usable| length(u) <= SURE_SIGMAS * unit;
+    let agrees = |u: &&Usable| length(u) <= SURE_RESIDUAL_SIGMAS * unit;
     for of in fixing.iter().chain(&checks) {
         let point = &mut points[of.number];
         let (off, axes) = (of.tie.off(&similarity, 0.0), of.tie.known.axes());
@@ -244,7 +244,7 @@ pub(super) fn meeting(block: &Block, of_points: &[Vec<Mark>]) -> f64 {
             return 0.0;
         };
         let share = |&i: &usize| {
-            let r = with.residual(&observations[i], &place) / SURE_SIGMAS;
+            let r = with.residual(&observations[i], &place) / SURE_RESIDUAL_SIGMAS;
             1.0 - (r * r).min(1.0)
         };
         agreeing.iter().map(share).sum::<f64>()

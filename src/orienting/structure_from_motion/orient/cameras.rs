@@ -6,7 +6,7 @@ use super::options::OrientOptions;
 use super::photo::Photo;
 use crate::base::error::listed as names;
 use crate::base::geometry::mean_point;
-use crate::base::math::{SURE_SIGMAS, median};
+use crate::base::math::{SURE_RESIDUAL_SIGMAS, median};
 use crate::orienting::orientation::{Anchor, geocentric_of};
 use crate::orienting::structure_from_motion::frame::{
     RECEIVER_SIGMA_M, StatedPose, rotation_of_angles,
@@ -162,7 +162,7 @@ fn beside_headers(photos: &[Photo], listed: &[PhotoMetadata]) -> Option<String> 
         Some((on_ellipsoid(&photo.metadata)? - on_ellipsoid(listed)?).norm())
     });
     let metres = median(&mut apart.collect::<Vec<f64>>())?;
-    (metres > SURE_SIGMAS * RECEIVER_SIGMA_M).then(|| {
+    (metres > SURE_RESIDUAL_SIGMAS * RECEIVER_SIGMA_M).then(|| {
         format!(
             "the places in {} lie {metres:.0} m from the positions in the headers of the same \
              photographs: {0} counts; take it away where it is of another system or flight",
