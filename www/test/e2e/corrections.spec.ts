@@ -333,12 +333,12 @@ test("facets are deleted and made symmetric, and corners dragged, in the 3D view
       const { x, y } = seen(corner);
       await page.mouse.click(x, y);
     }
-    await page.keyboard.press("Escape");
     await panel().getByLabel("Something stands here, height above the facet").fill("0.8");
     await page.keyboard.press("Enter");
     await expect(done().first()).toHaveText(/Obstruction added: 0.80 m/);
     await settled(page);
     await expect(panel().getByRole("button", { name: /^Delete obstruction 1/ })).toBeVisible();
+    await page.getByRole("button", { name: "Draw", exact: true }).click();
     await undo();
   });
 
