@@ -149,7 +149,7 @@ pub(super) fn add_facet(
     outline: &[Point3<f64>],
     ground_z: Option<f64>,
 ) -> Result<(), NotApplied> {
-    is_plausible_outline(outline)?;
+    expect_outline(outline)?;
     let drawn: Vec<(Point3<f64>, f64)> = (outline.iter())
         .map(|p| {
             let all = draft.facets().flat_map(|(_, f)| corners(&f.facet));
@@ -190,8 +190,8 @@ pub(super) fn add_facet(
     Ok(())
 }
 
-/// Is it no outline, or one of numbers that a model cannot have?
-pub(super) fn is_plausible_outline(outline: &[Point3<f64>]) -> Result<(), NotApplied> {
+/// Refuses what is no outline, and one of numbers that a model cannot have.
+pub(super) fn expect_outline(outline: &[Point3<f64>]) -> Result<(), NotApplied> {
     let is_near = |p: &Point3<f64>| p.coords.iter().all(|c| c.abs() < FARTHEST_COORDINATE_M);
     let is_plausible = (3..=1000).contains(&outline.len()) && outline.iter().all(is_near);
     is_plausible.then_some(()).ok_or(NotApplied::Implausible)

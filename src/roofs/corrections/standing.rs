@@ -4,7 +4,7 @@ use nalgebra::{Point2, Point3};
 
 use super::draft::Draft;
 use super::outcome::NotApplied;
-use super::shape::{FARTHEST_COORDINATE_M, is_plausible_outline};
+use super::shape::{FARTHEST_COORDINATE_M, expect_outline};
 use crate::base::geometry::{Polygon, mean_point};
 use crate::roofs::model::{Obstruction, WELD_M, is_simple};
 
@@ -27,7 +27,7 @@ pub(super) fn add_obstruction(
     outline: &[Point3<f64>],
     height_m: f64,
 ) -> Result<(), NotApplied> {
-    is_plausible_outline(outline)?;
+    expect_outline(outline)?;
     // What is no number is refused.
     let is_plausible = (WELD_M..FARTHEST_COORDINATE_M).contains(&height_m);
     if !is_plausible {

@@ -74,7 +74,23 @@ const OPERATORS: Readonly<Record<string, string>> = {
 /** Operators with what they go over below them. */
 const WITH_LIMITS: readonly string[] = ["∑", "min", "max"];
 /** Names and letters that have no meaning of their own. */
-const NAMES = new Set("log ln exp sin cos tan det I3 0v T -1 -T 2 + '".split(" "));
+const NAMES = new Set([
+  "log",
+  "ln",
+  "exp",
+  "sin",
+  "cos",
+  "tan",
+  "det",
+  "I3",
+  "0v",
+  "T",
+  "-1",
+  "-T",
+  "2",
+  "+",
+  "'",
+]);
 const SHOWN: Readonly<Record<string, string>> = { I3: "I", "0v": "0", "-1": "−1", "-T": "−T", "'": "′" };
 
 class Words {

@@ -7,10 +7,24 @@ import { escaped } from "../../words/linkedText";
 import { at, hex, SvgPen } from "./svgPen";
 
 /** What a style sheet says of a chart, and a file has to say itself. */
-const STYLES = (
-  "fill fill-opacity stroke stroke-width stroke-opacity stroke-dasharray stroke-linecap stroke-linejoin opacity " +
-  "font-family font-size font-weight text-anchor paint-order display visibility"
-).split(" ");
+const STYLES = [
+  "fill",
+  "fill-opacity",
+  "stroke",
+  "stroke-width",
+  "stroke-opacity",
+  "stroke-dasharray",
+  "stroke-linecap",
+  "stroke-linejoin",
+  "opacity",
+  "font-family",
+  "font-size",
+  "font-weight",
+  "text-anchor",
+  "paint-order",
+  "display",
+  "visibility",
+] as const;
 
 const CONTROLS = "input, select, summary, .choice, .toolbar, [data-control], .visually-hidden";
 
